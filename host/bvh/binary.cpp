@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: MIT
+#include "bvh/binary.hpp"
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <future>
+#include <thread>
+
+namespace manylight {
+namespace {
+
+constexpr int bin_count = 32;
+constexpr int deepest_sah = 48;            // below, halves: bounds the depth whatever the input
+constexpr std::size_t task_size = 32'768;  // triangles worth a thread of their own
+
+struct Reference {
+    Bounds bounds;
+    glm::vec3 centre;
+    std::uint32_t triangle;
+};
+
+float half_area(const Bounds& b) {
+    const glm::vec3 d = b.upper - b.lower;
+    return b.empty() ? 0 : d.x * d.y + d.y * d.z + d.z * d.x;
+}
+
+void add(Bounds& into, const Bounds& b) {
+    into.lower = glm::min(into.lower, b.lower);
+    into.upper = glm::max(into.upper, b.upper);
+}
+
+struct Bin {
+    Bounds bounds;
+    std::uint32_t count = 0;
+};
+
+struct Split {
+    int axis = -1;  // -1: none
+    int bin = 0;    // the first bin of the right side
+    float cost = std::numeric_limits<float>::infinity();
+};
+
+// Maps centres to bins along each axis.
+struct Binning {
+    glm::vec3 lower, scale;
+    explicit Binning(const Bounds& centres) : lower(centres.lower), scale(0) {
+        for (int axis = 0; axis < 3; ++axis) {
+            const float width = centres.upper[axis] - lower[axis];
+            if (width > 0) scale[axis] = bin_count * 0.9999f / width;
+            if (!std::isfinite(scale[axis])) scale[axis] = 0;
+        }
+    }
+    [[nodiscard]] int bin(const Reference& r, int axis) const {
+        return static_cast<int>((r.centre[axis] - lower[axis]) * scale[axis]);
+    }
+};
+
+class Builder {
+  public:
+    Builder(std::vector<Reference> references, unsigned leaf_size)
+        : references_(std::move(references)), leaf_size_(leaf_size) {
+        bvh_.nodes.resize(2 * references_.size() - 1);
+    }
+
+    BinaryBvh build() {
+        const unsigned threads = std::max(std::thread::hardware_concurrency(), 1u);
+        while ((1u << task_depth_) < 4 * threads) ++task_depth_;
+        build_node(0, 0, references_.size(), 0);
+        bvh_.nodes.resize(next_node_);
+        bvh_.triangles.reserve(references_.size());
+        for (const Reference& r : references_) bvh_.triangles.push_back(r.triangle);
+        return std::move(bvh_);
+    }
+
+  private:
+    void build_node(std::uint32_t index, std::size_t begin, std::size_t end, int depth) {
+        BinaryNode& node = bvh_.nodes[index];
+        Bounds centres;
+        for (std::size_t i = begin; i < end; ++i) {
+            add(node.bounds, references_[i].bounds);
+            centres.add(references_[i].centre);
+        }
+        const std::size_t count = end - begin;
+        if (count <= leaf_size_) {
+            node.first = static_cast<std::uint32_t>(begin);
+            node.count = static_cast<std::uint32_t>(count);
+            return;
+        }
+        const std::size_t middle = partition(begin, end, centres, depth);
+        const std::uint32_t left = next_node_.fetch_add(2);
+        node.first = left;
+        node.right = left + 1;
+        const bool fork = count >= task_size && depth < task_depth_;
+        const auto right = [=, this] { build_node(left + 1, middle, end, depth + 1); };
+        std::future<void> task;
+        if (fork) task = std::async(std::launch::async, right);
+        build_node(left, begin, middle, depth + 1);
+        fork ? task.get() : right();
+    }
+
+    // Puts the left side's references first and returns where the right side's begin.
+    std::size_t partition(std::size_t begin, std::size_t end, const Bounds& centres, int depth) {
+        const Binning binning(centres);
+        const Split split = depth < deepest_sah ? find_split(begin, end, binning) : Split{};
+        const auto first = references_.begin() + static_cast<std::ptrdiff_t>(begin);
+        const auto last = references_.begin() + static_cast<std::ptrdiff_t>(end);
+        if (split.axis < 0) return begin + (end - begin) / 2;  // coincident centres: any halves do
+        const auto middle = std::partition(first, last, [&](const Reference& r) {
+            return binning.bin(r, split.axis) < split.bin;
+        });
+        return static_cast<std::size_t>(middle - references_.begin());
+    }
+
+    Split find_split(std::size_t begin, std::size_t end, const Binning& binning) const {
+        std::array<std::array<Bin, bin_count>, 3> bins;
+        for (std::size_t i = begin; i < end; ++i)
+            for (int axis = 0; axis < 3; ++axis) {
+                Bin& bin = bins[axis][binning.bin(references_[i], axis)];
+                add(bin.bounds, references_[i].bounds);
+                ++bin.count;
+            }
+        Split best;
+        for (int axis = 0; axis < 3; ++axis)
+            if (binning.scale[axis] > 0) sweep(bins[axis], axis, best);
+        return best;
+    }
+
+    // The cost of a side is its area times the blocks that its triangles fill.
+    [[nodiscard]] float cost(const Bounds& bounds, std::uint32_t count) const {
+        return half_area(bounds) * static_cast<float>((count + leaf_size_ - 1) / leaf_size_);
+    }
+
+    void sweep(const std::array<Bin, bin_count>& bins, int axis, Split& best) const {
+        std::array<float, bin_count> right_cost{};
+        Bin right;
+        for (int i = bin_count - 1; i > 0; --i) {
+            add(right.bounds, bins[i].bounds);
+            right.count += bins[i].count;
+            right_cost[i] = right.count == 0 ? std::numeric_limits<float>::infinity()
+                                             : cost(right.bounds, right.count);
+        }
+        Bin left;
+        for (int i = 1; i < bin_count; ++i) {
+            add(left.bounds, bins[i - 1].bounds);
+            left.count += bins[i - 1].count;
+            if (left.count == 0) continue;
+            const float total = cost(left.bounds, left.count) + right_cost[i];
+            if (total < best.cost) best = {axis, i, total};
+        }
+    }
+
+    std::vector<Reference> references_;
+    unsigned leaf_size_;
+    int task_depth_ = 0;
+    BinaryBvh bvh_;
+    std::atomic<std::uint32_t> next_node_ = 1;
+};
+
+}  // namespace
+
+BinaryBvh build_binary_bvh(const Scene& scene, unsigned leaf_size) {
+    std::vector<Reference> references;
+    references.reserve(scene.triangle_count());
+    for (std::size_t t = 0; t < scene.triangle_count(); ++t) {
+        glm::vec3 v[3];
+        Reference r;
+        for (int k = 0; k < 3; ++k) r.bounds.add(v[k] = scene.vertices[scene.indices[3 * t + k]]);
+        if (glm::cross(v[1] - v[0], v[2] - v[0]) == glm::vec3(0)) continue;
+        r.centre = r.bounds.lower * 0.5f + r.bounds.upper * 0.5f;
+        r.triangle = static_cast<std::uint32_t>(t);
+        references.push_back(r);
+    }
+    if (references.empty()) return {};
+    return Builder(std::move(references), leaf_size).build();
+}
+
+}  // namespace manylight

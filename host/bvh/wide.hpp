@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <vector>
+
+#include "bvh/binary.hpp"
+#include "scene/scene.hpp"
+
+namespace manylight {
+
+/// A BVH for kernels/lib/bvh.h: all children of a node, and all triangles of a leaf's block, lie
+/// side by side in vector lanes.
+struct WideBvh {
+    unsigned width = 0;  // children of a node, lanes
+    unsigned block = 0;  // triangles of a block, lanes
+    unsigned stack = 0;  // entries that a traversal's stack needs, a multiple of 32
+    /// nodes[(7 * node + row) * width + lane]: lower x y z, upper x y z, and the child as an int:
+    /// a node, or ~(block index << 4 | triangles - 1).
+    std::vector<float> nodes;
+    /// blocks[(10 * index + row) * block + lane]: vertices 0, 1, 2, each x y z, and the triangle's
+    /// index as an int.
+    std::vector<float> blocks;
+};
+
+/// The wide BVH of a scene; `width` and `block` are 4, 8 or 16. Boxes are padded so that a ray that
+/// starts within `reach` of the origin (the largest absolute coordinate, m) misses none by
+/// rounding.
+[[nodiscard]] WideBvh build_wide_bvh(const Scene& scene, unsigned width, unsigned block,
+                                     float reach);
+
+/// The largest absolute coordinate at which rays of `camera` through a scene start or end.
+[[nodiscard]] float reach_of(const Scene& scene, const Camera& camera);
+
+}  // namespace manylight

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: MIT
+// What the program's subcommands do; options.cpp parses their arguments.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "pipeline/frame.hpp"
+
+namespace manylight {
+
+/// What every command that loads a scene and opens a device takes.
+struct SceneArguments {
+    std::string file;
+    std::string camera;
+    std::optional<unsigned> emitter_points;
+    std::string device;
+    unsigned threads = 0;
+    unsigned width = 0;   // 0: from the height and the camera's aspect
+    unsigned height = 0;  // 0: likewise, or 512
+};
+
+struct RenderArguments {
+    SceneArguments scene;
+    RenderOptions options;
+    std::vector<std::string> outputs;
+    std::optional<float> exposure;  // stops over the scene's units; otherwise automatic
+    std::string cluster_map;        // .png
+    std::string stats;
+    bool quiet = false;
+};
+
+struct VerifyArguments {
+    SceneArguments scene;
+    ClusterOptions clusters;
+    uint seed = 1;
+};
+
+struct BuiltinArguments {
+    std::string name;
+    std::string output;
+    unsigned lights = 0;  // 0: the scene's own number
+    std::string mesh;
+};
+
+// Each returns the program's exit status and throws InputError or RuntimeError.
+int run_render(const RenderArguments& arguments);
+int run_verify(const VerifyArguments& arguments);
+int run_scene(const BuiltinArguments& arguments);
+int run_devices();
+int run_compare(const std::string& image, const std::string& reference, bool json);
+
+/// Parses the command line and runs what it asks for.
+int run_program(int argc, char** argv);
+
+/// A scene with its lights, seen by a camera.
+struct LoadedScene {
+    Scene scene;
+    std::string view_name;
+    Camera camera;
+    unsigned width, height;
+};
+
+/// Loads a scene, makes its emitters lights and finds the camera; prints the file's warnings.
+[[nodiscard]] LoadedScene load(const SceneArguments& arguments);
+
+}  // namespace manylight

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: MIT
+#include <fmt/format.h>
+
+#include "commands/commands.hpp"
+#include "stages/device_scene.hpp"
+
+namespace manylight {
+
+int run_devices() {
+    const std::vector<DeviceInfo> devices = list_devices();
+    if (devices.empty()) {
+        fmt::print("no OpenCL device: install a driver, such as Debian's pocl-opencl-icd\n");
+        return 1;
+    }
+    std::size_t chosen = devices.size();
+    try {
+        chosen = select_device("");
+    } catch (const std::exception&) {  // none is usable: the list says why
+    }
+    for (std::size_t i = 0; i < devices.size(); ++i) {
+        const DeviceInfo& d = devices[i];
+        fmt::print("{}: {}{}\n", i, d.name, i == chosen ? "  (default)" : "");
+        fmt::print("   {}, {}, {}, driver {}\n", d.platform, d.version, d.language, d.driver);
+        fmt::print("   {}, {} compute units, {:.1f} GiB memory, at most {:.1f} GiB in a buffer\n",
+                   d.is_gpu ? "GPU" : "CPU or other", d.compute_units,
+                   static_cast<double>(d.global_memory) / (1 << 30),
+                   static_cast<double>(d.max_allocation) / (1 << 30));
+        if (d.usable)
+            fmt::print("   can render; traces {} boxes or triangles at a time\n", lanes_for(d));
+        else
+            fmt::print("   cannot render: needs OpenCL 1.2, a compiler and little-endian memory\n");
+    }
+    return 0;
+}
+
+}  // namespace manylight

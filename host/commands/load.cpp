@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: MIT
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "commands/commands.hpp"
+#include "error.hpp"
+#include "scene/gltf.hpp"
+
+namespace manylight {
+namespace {
+
+constexpr double default_aspect = 16.0 / 9;
+
+void choose_size(LoadedScene& out, const SceneArguments& arguments, double aspect) {
+    if (aspect == 0) aspect = default_aspect;
+    double width = arguments.width;
+    double height = arguments.height;
+    if (width == 0 && height == 0) height = 512;
+    if (width == 0) width = std::round(height * aspect);
+    if (height == 0) height = std::round(width / aspect);
+    if (width < 1 || width > 65536 || height < 1 || height > 65536)
+        throw InputError("{}: the image would have {} x {} pixels; give --width and --height",
+                         arguments.file, width, height);
+    out.width = static_cast<unsigned>(width);
+    out.height = static_cast<unsigned>(height);
+}
+
+}  // namespace
+
+LoadedScene load(const SceneArguments& arguments) {
+    LoadedScene out;
+    Scene& scene = out.scene;
+    scene = load_scene(arguments.file);
+    for (const std::string& warning : scene.warnings) fmt::print(stderr, "warning: {}\n", warning);
+    add_emitters(scene, arguments.emitter_points.value_or(scene.emitter_points.value_or(0)));
+    if (scene.lights.empty())
+        fmt::print(stderr, "warning: {}: the scene has no lights\n", scene.file);
+    const View view = find_view(scene, arguments.camera);
+    out.view_name = view.name;
+    choose_size(out, arguments, view.aspect);
+    out.camera = make_camera(view, out.width, out.height);
+    return out;
+}
+
+}  // namespace manylight

@@ -1,0 +1,241 @@
+// SPDX-License-Identifier: MIT
+// The command line; CLI11 is included here only (it takes long to compile).
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cmath>
+
+#include "commands/commands.hpp"
+#include "error.hpp"
+#include "scene/builtin/builtin.hpp"
+
+namespace manylight {
+namespace {
+
+// "2G", "512M", "100000": bytes.
+std::size_t parse_bytes(const std::string& text) {
+    std::size_t end = 0;
+    double number = 0;
+    try {
+        number = std::stod(text, &end);
+    } catch (const std::exception&) {
+        end = 0;
+    }
+    const std::string unit = text.substr(end);
+    const std::map<std::string, double> units = {
+        {"", 1}, {"K", 1024}, {"M", 1024. * 1024}, {"G", 1024. * 1024 * 1024}};
+    if (end == 0 || !units.contains(unit) || !(number > 0) || number * units.at(unit) > 1e15)
+        throw CLI::ValidationError("--memory",
+                                   text + " is no size; write, for instance, 512M or 2G");
+    return static_cast<std::size_t>(number * units.at(unit));
+}
+
+// A whole number within limits; CLI11's own range prints limits of 300 digits.
+CLI::Validator whole(double lower, double upper) {
+    return CLI::Validator(
+        [lower, upper](std::string& text) {
+            char* end = nullptr;
+            const double value = std::strtod(text.c_str(), &end);
+            if (!text.empty() && *end == '\0' && value == std::floor(value) && value >= lower &&
+                value <= upper)
+                return std::string();
+            return fmt::format("{} is no whole number from {:.0f} to {:.0f}", text, lower, upper);
+        },
+        "");
+}
+
+CLI::Validator number(double lower, double upper) {
+    return CLI::Validator(
+        [lower, upper](std::string& text) {
+            char* end = nullptr;
+            const double value = std::strtod(text.c_str(), &end);
+            if (!text.empty() && *end == '\0' && value >= lower && value <= upper)
+                return std::string();
+            return fmt::format("{} is no number from {} to {}", text, lower, upper);
+        },
+        "");
+}
+
+const CLI::Validator power_of_two(
+    [](std::string& text) {
+        for (const char* allowed : {"8", "16", "32", "64", "128"})
+            if (text == allowed) return std::string();
+        return text + " is not 8, 16, 32, 64 or 128";
+    },
+    "");
+
+constexpr double largest_uint = 4294967295.0;
+
+void add_scene(CLI::App& command, SceneArguments& scene) {
+    command.add_option("file", scene.file, "glTF 2.0 scene, .gltf or .glb")->required();
+    command.add_option("--camera", scene.camera, "camera by name (default: the file's first)");
+    command
+        .add_option("--emitter-points", scene.emitter_points,
+                    "replace emissive triangles by N oriented points of equal power; 0: area "
+                    "lights (default: the file's wish, or 0)")
+        ->check(whole(0, 1 << 24));
+    command.add_option("--device", scene.device,
+                       "OpenCL device: number or part of its name, see 'manylight devices'");
+    command.add_option("--threads", scene.threads, "processors that a CPU device may use")
+        ->check(whole(1, 4096));
+    command.add_option("--width", scene.width, "image width (default: from the height)")
+        ->check(whole(1, 65536));
+    command.add_option("--height", scene.height, "image height (default: 512)")
+        ->check(whole(1, 65536));
+}
+
+void add_clusters(CLI::App& command, ClusterOptions& clusters) {
+    const char* group = "Clusters (samplers contribution and contribution-defensive)";
+    command.add_option("--tile-size", clusters.tile_size, "pixels of a tile's side")
+        ->check(power_of_two)
+        ->capture_default_str()
+        ->group(group);
+    command.add_option("--max-depth", clusters.max_depth, "depth of a tile's quadtree")
+        ->check(whole(0, 7))
+        ->capture_default_str()
+        ->group(group);
+    command
+        .add_option("--normal-threshold", clusters.normal_threshold,
+                    "split where corner normals differ by more degrees")
+        ->check(number(0, 180))
+        ->capture_default_str()
+        ->group(group);
+    command
+        .add_option("--visibility-threshold", clusters.visibility_threshold,
+                    "split where less than this share of the lights is seen")
+        ->check(number(0, 1))
+        ->capture_default_str()
+        ->group(group);
+}
+
+std::string sampler_list() {
+    std::string text = "\nSamplers:\n";
+    for (const Sampler& s : all_samplers())
+        text +=
+            fmt::format("  {:<24}{} ({})\n", s.name, s.summary, s.biased ? "biased" : "unbiased");
+    return text;
+}
+
+std::string aov_list() {
+    std::string text = "\nLayers for --aov:\n";
+    for (const Aov& aov : all_aovs()) text += fmt::format("  {:<24}{}\n", aov.name, aov.summary);
+    return text;
+}
+
+void add_render(CLI::App& app, std::function<int()>& run) {
+    auto arguments = std::make_shared<RenderArguments>();
+    CLI::App* command = app.add_subcommand("render", "render a scene to an image");
+    add_scene(*command, arguments->scene);
+    RenderOptions& o = arguments->options;
+    command->add_option("-o,--output", arguments->outputs,
+                        "image, .exr or .png; may be given several times (default: the scene's "
+                        "name with .png, here)");
+    command->add_option("--sampler", o.sampler, "see below")->capture_default_str();
+    command->add_option("--light-samples", o.light_samples, "light samples per pixel sample")
+        ->check(whole(1, 65536))
+        ->capture_default_str();
+    command->add_option("--spp", o.spp, "pixel samples; 1: at the pixel's centre")
+        ->check(whole(1, 1 << 20))
+        ->capture_default_str();
+    command->add_option("--seed", o.seed, "same seed, same image")
+        ->check(whole(0, largest_uint))
+        ->capture_default_str();
+    command->add_flag("--pixel-centre", o.pixel_centre, "all pixel samples at the pixel's centre");
+    command
+        ->add_option("--exposure", arguments->exposure,
+                     "stops by which a .png is brighter than the scene (default: automatic)")
+        ->check(number(-100, 100));
+    command->add_option("--aov", o.aovs, "extra layers of the .exr, see below")->delimiter(',');
+    command->add_option("--cluster-map", arguments->cluster_map,
+                        "picture of the clusters and their representatives, .png");
+    command->add_option("--stats", arguments->stats, "seconds, rays and memory, as JSON");
+    command->add_option_function<std::string>(
+        "--memory", [&o](const std::string& text) { o.memory = parse_bytes(text); },
+        "most memory on the device, such as 512M (default: half of it, at most 2G)");
+    command->add_flag("-q,--quiet", arguments->quiet, "print errors and warnings only");
+    add_clusters(*command, o.clusters);
+    command->footer(sampler_list() + aov_list() +
+                    "\nExamples:\n"
+                    "  manylight render scene.glb\n"
+                    "  manylight render scene.glb -o a.exr -o a.png --spp 16 --light-samples 8\n"
+                    "  manylight render scene.glb --sampler exhaustive -o reference.exr\n"
+                    "  manylight render scene.glb --cluster-map clusters.png --stats stats.json\n");
+    command->callback([&run, arguments] {
+        for (const std::string& name : arguments->options.aovs)
+            if (std::ranges::none_of(all_aovs(), [&](const Aov& a) { return a.name == name; }))
+                throw CLI::ValidationError("--aov", "there is no layer " + name);
+        run = [arguments] { return run_render(*arguments); };
+    });
+}
+
+void add_verify(CLI::App& app, std::function<int()>& run) {
+    auto arguments = std::make_shared<VerifyArguments>();
+    CLI::App* command = app.add_subcommand(
+        "verify", "judge every kernel on a device by the scalar reference, on a scene");
+    add_scene(*command, arguments->scene);
+    command->add_option("--seed", arguments->seed, "of the random numbers")
+        ->check(whole(0, largest_uint))
+        ->capture_default_str();
+    add_clusters(*command, arguments->clusters);
+    command->footer(
+        "\nExits with 0 if all stages pass, with 3 otherwise.\n\nExamples:\n"
+        "  manylight verify scene.glb\n"
+        "  manylight verify scene.glb --device intel --width 128\n");
+    command->callback([&run, arguments] { run = [arguments] { return run_verify(*arguments); }; });
+}
+
+void add_scene_command(CLI::App& app, std::function<int()>& run) {
+    auto arguments = std::make_shared<BuiltinArguments>();
+    CLI::App* command = app.add_subcommand("scene", "write a built-in scene as a .glb file");
+    command->add_option("name", arguments->name, "see below")->required();
+    command->add_option("-o,--output", arguments->output, "file to write, .glb")->required();
+    command->add_option("--lights", arguments->lights, "number of lights, for city")
+        ->check(whole(1, 1'000'000));
+    command->add_option("--mesh", arguments->mesh, "glTF file whose mesh stands in dragon's room");
+    std::string footer = "\nScenes:\n";
+    for (const Builtin& scene : all_builtins())
+        footer += fmt::format("  {:<12}{}\n", scene.name, scene.summary);
+    command->footer(footer +
+                    "\nExamples:\n"
+                    "  manylight scene cornell -o cornell.glb\n"
+                    "  manylight scene city --lights 1000000 -o city.glb\n"
+                    "  manylight scene dragon --mesh bunny.glb -o bunny-room.glb\n");
+    command->callback([&run, arguments] { run = [arguments] { return run_scene(*arguments); }; });
+}
+
+}  // namespace
+
+int run_program(int argc, char** argv) {
+    CLI::App app(
+        "manylight renders the direct light of hundreds to a million lights on any OpenCL device.",
+        "manylight");
+    app.set_version_flag("--version", "manylight " MANYLIGHT_VERSION);
+    app.require_subcommand(1);
+    app.footer("\n'manylight COMMAND --help' tells more, with examples.\n");
+    std::function<int()> run;
+    add_render(app, run);
+    add_verify(app, run);
+    add_scene_command(app, run);
+    app.add_subcommand("devices", "list OpenCL devices and what each can do")->callback([&run] {
+        run = run_devices;
+    });
+    std::string image;
+    std::string reference;
+    bool json = false;
+    CLI::App* compare = app.add_subcommand("compare", "measure an image's error against another");
+    compare->add_option("image", image, "image to judge")->required();
+    compare->add_option("reference", reference, "what it should be")->required();
+    compare->add_flag("--json", json, "print JSON");
+    compare->footer("\nExample:\n  manylight compare render.exr reference.exr\n");
+    compare->callback([&] { run = [&] { return run_compare(image, reference, json); }; });
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::Success& help) {
+        return app.exit(help);
+    } catch (const CLI::ParseError& error) {
+        throw InputError("{}", error.what());
+    }
+    return run();
+}
+
+}  // namespace manylight

@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: MIT
+#include "device/device.hpp"
+
+#include <sched.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+
+#include "device/context.hpp"
+#include "error.hpp"
+
+namespace manylight {
+namespace {
+
+// Lets the process, and so a CPU driver's threads, run on the first `threads` processors it has.
+void limit_threads(unsigned threads) {
+    cpu_set_t allowed;
+    cpu_set_t kept;
+    CPU_ZERO(&kept);
+    if (sched_getaffinity(0, sizeof(allowed), &allowed) != 0) return;
+    unsigned left = threads;
+    for (int cpu = 0; cpu < CPU_SETSIZE && left > 0; ++cpu)
+        if (CPU_ISSET(cpu, &allowed)) {
+            CPU_SET(cpu, &kept);
+            --left;
+        }
+    if (left > 0)
+        throw InputError("--threads {}: only {} processors are available", threads, threads - left);
+    sched_setaffinity(0, sizeof(kept), &kept);
+    // PoCL starts a thread per processor of the machine, whatever the affinity.
+    setenv("POCL_MAX_PTHREAD_COUNT", std::to_string(threads).c_str(), 0);
+}
+
+// PoCL's builds fail with an unhelpful message where its kernel cache cannot be written.
+void check_pocl_cache() {
+    namespace fs = std::filesystem;
+    const auto variable = [](const char* name) {
+        const char* value = std::getenv(name);
+        return std::string(value ? value : "");
+    };
+    fs::path folder = variable("POCL_CACHE_DIR");
+    if (folder.empty() && !variable("XDG_CACHE_HOME").empty())
+        folder = fs::path(variable("XDG_CACHE_HOME")) / "pocl/kcache";
+    if (folder.empty() && !variable("HOME").empty())
+        folder = fs::path(variable("HOME")) / ".cache/pocl/kcache";
+    if (folder.empty()) return;  // PoCL then uses a folder of its own in /tmp
+    std::error_code error;
+    fs::create_directories(folder, error);
+    const fs::path probe = folder / fmt::format("manylight-{}", getpid());
+    const bool writable = !error && std::ofstream(probe).put('\n').flush().good();
+    fs::remove(probe, error);
+    if (!writable)
+        throw RuntimeError(
+            "PoCL's kernel cache {} cannot be written; set POCL_CACHE_DIR to a folder that can",
+            folder.string());
+}
+
+}  // namespace
+
+std::string describe(const cl::Error& error) {
+    return fmt::format("{} failed with OpenCL error {}", error.what(), error.err());
+}
+
+DeviceMemory::Allocation::~Allocation() { context->allocated -= bytes; }
+
+std::size_t DeviceMemory::bytes() const { return allocation_ ? allocation_->bytes : 0; }
+
+void DeviceMemory::write(const void* source, std::size_t bytes, std::size_t offset) {
+    if (bytes == 0) return;
+    try {
+        allocation_->context->queue.enqueueWriteBuffer(allocation_->buffer, CL_TRUE, offset, bytes,
+                                                       source);
+    } catch (const cl::Error& error) {
+        throw RuntimeError("{}: {}", allocation_->context->info.name, describe(error));
+    }
+}
+
+void DeviceMemory::read(void* destination, std::size_t bytes, std::size_t offset) const {
+    if (bytes == 0) return;
+    try {
+        allocation_->context->queue.enqueueReadBuffer(allocation_->buffer, CL_TRUE, offset, bytes,
+                                                      destination);
+    } catch (const cl::Error& error) {
+        throw RuntimeError("{}: {}", allocation_->context->info.name, describe(error));
+    }
+}
+
+void DeviceMemory::clear() {
+    if (!allocation_) return;
+    allocation_->context->queue.enqueueFillBuffer(allocation_->buffer, cl_uchar{0}, 0,
+                                                  allocation_->bytes);
+}
+
+Device Device::open(std::string_view selector, unsigned threads) {
+    if (threads > 0) limit_threads(threads);
+    const std::size_t index = select_device(selector);
+    Device device;
+    device.context_ = std::make_shared<Context>();
+    Context& context = *device.context_;
+    context.info = list_devices()[index];
+    if (context.info.platform == "Portable Computing Language") check_pocl_cache();
+    try {
+        context.device = all_devices()[index];
+        context.context = cl::Context(context.device);
+        context.queue =
+            cl::CommandQueue(context.context, context.device, CL_QUEUE_PROFILING_ENABLE);
+    } catch (const cl::Error& error) {
+        throw RuntimeError("{}: {}", context.info.name, describe(error));
+    }
+    return device;
+}
+
+const DeviceInfo& Device::info() const { return context_->info; }
+
+DeviceMemory Device::allocate_bytes(std::size_t bytes) {
+    DeviceMemory memory;
+    memory.allocation_ = std::make_shared<DeviceMemory::Allocation>();
+    DeviceMemory::Allocation& allocation = *memory.allocation_;
+    allocation.context = context_;
+    try {  // OpenCL has no empty buffers
+        allocation.buffer = cl::Buffer(context_->context, CL_MEM_READ_WRITE,
+                                       std::max<std::size_t>(bytes, sizeof(cl_float16)));
+    } catch (const cl::Error& error) {
+        throw RuntimeError("{}: cannot allocate {} bytes (OpenCL error {}); see --memory",
+                           context_->info.name, bytes, error.err());
+    }
+    allocation.bytes = bytes;
+    context_->allocated += bytes;
+    context_->peak = std::max(context_->peak, context_->allocated);
+    return memory;
+}
+
+void Device::finish() { context_->collect(); }
+
+std::size_t Device::peak_bytes() const { return context_->peak; }
+
+double Device::compile_seconds() const { return context_->compile_seconds; }
+
+std::map<std::string, double> Device::stage_seconds() {
+    context_->collect();
+    return context_->stage_seconds;
+}
+
+void Device::Context::collect() {
+    try {
+        queue.finish();
+        for (const auto& [stage, event] : running) {
+            const auto start = event.getProfilingInfo<CL_PROFILING_COMMAND_START>();
+            const auto end = event.getProfilingInfo<CL_PROFILING_COMMAND_END>();
+            stage_seconds[stage] += static_cast<double>(end - start) * 1e-9;
+        }
+    } catch (const cl::Error& error) {
+        running.clear();
+        throw RuntimeError("{}: {}", info.name, describe(error));
+    }
+    running.clear();
+}
+
+}  // namespace manylight

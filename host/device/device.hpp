@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: MIT
+// OpenCL without its headers: pick a device, hold its memory, build and launch kernels, take times.
+// Knows no stage.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <variant>
+#include <vector>
+
+namespace manylight {
+
+struct DeviceInfo {
+    std::string platform;
+    std::string name;
+    std::string version;   // of OpenCL
+    std::string language;  // version of OpenCL C
+    std::string driver;
+    bool is_gpu = false;
+    unsigned compute_units = 0;
+    std::uint64_t global_memory = 0;   // bytes
+    std::uint64_t max_allocation = 0;  // bytes, of one buffer
+    unsigned float_width = 1;          // native vector width, lanes
+    bool usable = false;               // available, with a compiler, little-endian, OpenCL >= 1.2
+};
+
+/// Every OpenCL device of every platform, in the loader's order.
+[[nodiscard]] std::vector<DeviceInfo> list_devices();
+
+/// The position in list_devices() that `selector` means: a number, or part of a platform's or
+/// device's name in any case; empty: a GPU if there is one, otherwise PoCL, otherwise the first.
+/// Throws InputError if that is no usable device.
+[[nodiscard]] std::size_t select_device(std::string_view selector);
+
+/// Bytes on a device; copies share them. Freed with the last copy.
+class DeviceMemory {
+  public:
+    DeviceMemory() = default;
+    [[nodiscard]] std::size_t bytes() const;
+    void write(const void* source, std::size_t bytes, std::size_t offset);
+    void read(void* destination, std::size_t bytes, std::size_t offset) const;
+    void clear();  // to zero bytes
+
+  private:
+    friend class Device;
+    friend class Kernel;
+    struct Allocation;
+    std::shared_ptr<Allocation> allocation_;
+};
+
+/// An array of T on a device.
+template <class T>
+class Buffer : public DeviceMemory {
+    static_assert(std::is_trivially_copyable_v<T>);
+
+  public:
+    Buffer() = default;
+    explicit Buffer(DeviceMemory memory) : DeviceMemory(std::move(memory)) {}
+    [[nodiscard]] std::size_t size() const { return bytes() / sizeof(T); }
+    void upload(std::span<const T> values, std::size_t first = 0) {
+        write(values.data(), values.size_bytes(), first * sizeof(T));
+    }
+    [[nodiscard]] std::vector<T> download(std::size_t first, std::size_t count) const {
+        std::vector<T> values(count);
+        read(values.data(), count * sizeof(T), first * sizeof(T));
+        return values;
+    }
+    [[nodiscard]] std::vector<T> download() const { return download(0, size()); }
+};
+
+/// Kernel arguments by the names that the kernel gives them; a kernel takes those that it has.
+class Arguments {
+  public:
+    template <class T>
+    Arguments& set(std::string name, const Buffer<T>& buffer) {
+        values_[std::move(name)] = DeviceMemory(buffer);
+        return *this;
+    }
+    template <class T>
+    requires std::is_trivially_copyable_v<T> Arguments& set(std::string name, const T& value) {
+        const auto* bytes = reinterpret_cast<const std::byte*>(&value);
+        values_[std::move(name)] = std::vector<std::byte>(bytes, bytes + sizeof(T));
+        return *this;
+    }
+    /// Takes over all of `other`.
+    Arguments& set(const Arguments& other) {
+        for (const auto& [name, value] : other.values_) values_[name] = value;
+        return *this;
+    }
+
+  private:
+    friend class Kernel;
+    std::map<std::string, std::variant<DeviceMemory, std::vector<std::byte>>> values_;
+};
+
+/// Integers that a kernel is compiled with (-D).
+using Defines = std::map<std::string, int>;
+
+/// A kernel of a built program; copies share it.
+class Kernel {
+  public:
+    /// Runs at least `items` work-items (a whole number of groups), in order with what was
+    /// launched before, without waiting. Throws std::logic_error if the kernel has a parameter
+    /// that `arguments` does not name, RuntimeError if the device refuses.
+    void launch(std::size_t items, const Arguments& arguments);
+
+  private:
+    friend class Device;
+    struct Built;
+    std::shared_ptr<Built> built_;
+};
+
+/// One OpenCL device with a queue. Copies share it.
+class Device {
+  public:
+    /// Opens a device (see select_device). `threads` > 0: on a CPU, use that many; to be called
+    /// before anything else touches OpenCL. Throws InputError, RuntimeError.
+    [[nodiscard]] static Device open(std::string_view selector, unsigned threads = 0);
+
+    [[nodiscard]] const DeviceInfo& info() const;
+
+    /// An array of `count` elements of undefined value. Throws RuntimeError if it does not fit.
+    template <class T>
+    [[nodiscard]] Buffer<T> allocate(std::size_t count) {
+        return Buffer<T>(allocate_bytes(count * sizeof(T)));
+    }
+    template <class T>
+    [[nodiscard]] Buffer<T> upload(std::span<const T> values) {
+        Buffer<T> buffer = allocate<T>(values.size());
+        buffer.upload(values);
+        return buffer;
+    }
+    template <class T>
+    [[nodiscard]] Buffer<T> upload(const std::vector<T>& values) {
+        return upload(std::span<const T>(values));
+    }
+
+    /// A kernel of kernels/`file`, built with `defines` for this device; its times count for
+    /// `stage`. Programs are built once. Throws RuntimeError with the device, options and log.
+    [[nodiscard]] Kernel kernel(std::string_view file, const std::string& name,
+                                const Defines& defines, const std::string& stage);
+
+    /// Waits until all that was launched is done.
+    void finish();
+
+    /// Largest number of bytes allocated at any one time.
+    [[nodiscard]] std::size_t peak_bytes() const;
+
+    /// Seconds that kernels ran on the device, by stage. Waits.
+    [[nodiscard]] std::map<std::string, double> stage_seconds();
+
+    /// Seconds spent on compiling kernels, those of their first launch included.
+    [[nodiscard]] double compile_seconds() const;
+
+    struct Context;  // OpenCL's objects
+
+  private:
+    [[nodiscard]] DeviceMemory allocate_bytes(std::size_t bytes);
+    std::shared_ptr<Context> context_;
+};
+
+}  // namespace manylight

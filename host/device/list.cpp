@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+
+#include "device/context.hpp"
+#include "error.hpp"
+
+namespace manylight {
+namespace {
+
+std::string trimmed(std::string text) {
+    while (!text.empty() && (text.back() == '\0' || text.back() == ' ')) text.pop_back();
+    return text;
+}
+
+std::string lower(std::string text) {
+    std::ranges::transform(text, text.begin(), [](unsigned char c) { return std::tolower(c); });
+    return text;
+}
+
+DeviceInfo describe_device(const cl::Device& device) {
+    DeviceInfo info;
+    const cl::Platform platform(device.getInfo<CL_DEVICE_PLATFORM>());
+    info.platform = trimmed(platform.getInfo<CL_PLATFORM_NAME>());
+    info.name = trimmed(device.getInfo<CL_DEVICE_NAME>());
+    info.version = trimmed(device.getInfo<CL_DEVICE_VERSION>());
+    info.language = trimmed(device.getInfo<CL_DEVICE_OPENCL_C_VERSION>());
+    info.driver = trimmed(device.getInfo<CL_DRIVER_VERSION>());
+    info.is_gpu = device.getInfo<CL_DEVICE_TYPE>() & CL_DEVICE_TYPE_GPU;
+    info.compute_units = device.getInfo<CL_DEVICE_MAX_COMPUTE_UNITS>();
+    info.global_memory = device.getInfo<CL_DEVICE_GLOBAL_MEM_SIZE>();
+    info.max_allocation = device.getInfo<CL_DEVICE_MAX_MEM_ALLOC_SIZE>();
+    info.float_width = std::max(device.getInfo<CL_DEVICE_NATIVE_VECTOR_WIDTH_FLOAT>(), 1u);
+    info.usable =
+        device.getInfo<CL_DEVICE_AVAILABLE>() && device.getInfo<CL_DEVICE_COMPILER_AVAILABLE>() &&
+        device.getInfo<CL_DEVICE_ENDIAN_LITTLE>() && !info.version.starts_with("OpenCL 1.0") &&
+        !info.version.starts_with("OpenCL 1.1");
+    return info;
+}
+
+std::size_t default_device(const std::vector<DeviceInfo>& devices) {
+    const auto find = [&](auto&& matches) {
+        const auto found = std::ranges::find_if(
+            devices, [&](const DeviceInfo& d) { return d.usable && matches(d); });
+        return static_cast<std::size_t>(found - devices.begin());
+    };
+    std::size_t index = find([](const DeviceInfo& d) { return d.is_gpu; });
+    if (index == devices.size())
+        index =
+            find([](const DeviceInfo& d) { return d.platform == "Portable Computing Language"; });
+    if (index == devices.size()) index = find([](const DeviceInfo&) { return true; });
+    return index;
+}
+
+}  // namespace
+
+std::vector<cl::Device> all_devices() {
+    std::vector<cl::Device> all;
+    std::vector<cl::Platform> platforms;
+    try {
+        cl::Platform::get(&platforms);
+    } catch (const cl::Error&) {  // the loader reports "no platforms" as an error
+        return all;
+    }
+    for (const cl::Platform& platform : platforms) {
+        std::vector<cl::Device> devices;
+        try {
+            platform.getDevices(CL_DEVICE_TYPE_ALL, &devices);
+        } catch (const cl::Error&) {  // a platform without devices does too
+            continue;
+        }
+        all.insert(all.end(), devices.begin(), devices.end());
+    }
+    return all;
+}
+
+std::vector<DeviceInfo> list_devices() {
+    std::vector<DeviceInfo> infos;
+    for (const cl::Device& device : all_devices()) infos.push_back(describe_device(device));
+    return infos;
+}
+
+std::size_t select_device(std::string_view selector) {
+    const std::vector<DeviceInfo> devices = list_devices();
+    std::size_t index = devices.size();
+    if (selector.empty()) {
+        index = default_device(devices);
+        if (index == devices.size())
+            throw RuntimeError(
+                "no usable OpenCL device: install a driver, such as Debian's pocl-opencl-icd");
+    } else if (std::ranges::all_of(selector, [](unsigned char c) { return std::isdigit(c); })) {
+        index = selector.size() < 6 ? std::stoul(std::string(selector)) : devices.size();
+    } else {
+        const std::string wanted = lower(std::string(selector));
+        for (index = 0; index < devices.size(); ++index)
+            if (lower(devices[index].platform + " " + devices[index].name).find(wanted) !=
+                std::string::npos)
+                break;
+    }
+    if (index >= devices.size())
+        throw InputError("--device {}: no such device ('manylight devices' lists the {} there are)",
+                         selector, devices.size());
+    if (!devices[index].usable)
+        throw InputError("--device {}: {} cannot be used (needs OpenCL 1.2 and a compiler)",
+                         selector, devices[index].name);
+    return index;
+}
+
+}  // namespace manylight

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: MIT
+// Images in memory and in files. Only host/output/ knows OpenImageIO.
+#pragma once
+
+#include <glm/vec3.hpp>
+#include <map>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+namespace manylight {
+
+/// width x height pixels of `channels.size()` floats, rows from the top.
+struct Image {
+    unsigned width = 0;
+    unsigned height = 0;
+    std::vector<std::string> channels;  // names, as in the file
+    std::vector<float> values;          // [(y * width + x) * channels.size() + channel]
+
+    Image() = default;
+    Image(unsigned w, unsigned h, std::vector<std::string> names)
+        : width(w),
+          height(h),
+          channels(std::move(names)),
+          values(std::size_t{w} * h * channels.size(), 0.0f) {}
+    [[nodiscard]] std::size_t pixel_count() const { return std::size_t{width} * height; }
+    [[nodiscard]] float* at(unsigned x, unsigned y) {
+        return values.data() + (std::size_t{y} * width + x) * channels.size();
+    }
+    [[nodiscard]] const float* at(unsigned x, unsigned y) const {
+        return values.data() + (std::size_t{y} * width + x) * channels.size();
+    }
+};
+
+/// Facts for a file's header.
+using Metadata = std::map<std::string, std::variant<int, float, std::string>>;
+
+/// Throws InputError unless `path` ends in .exr or .png, its folder exists and can be written.
+void check_output(const std::string& path);
+
+/// Writes layers side by side to an OpenEXR file of 32-bit floats, aside first and then renamed, so
+/// that a file of that name is replaced whole or not at all. Throws RuntimeError.
+void write_exr(const std::string& path, const std::vector<Image>& layers, const Metadata& metadata);
+
+/// Writes the first three channels, times `scale`, as an 8-bit sRGB PNG, in the same way.
+void write_png(const std::string& path, const Image& image, float scale, const Metadata& metadata);
+
+/// The scale that brings the 90th percentile of the luminances of `image` that are not 0 to 0.7.
+[[nodiscard]] float auto_exposure(const Image& image);
+
+/// The channels R, G, B of an image file, as floats. Throws InputError.
+[[nodiscard]] Image read_rgb(const std::string& path);
+
+}  // namespace manylight

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: MIT
+#include "reference/gbuffer.hpp"
+
+#include "reference/random.hpp"
+
+namespace manylight::reference {
+
+glm::dvec2 sample_point(const Tiles& tiles, uint x, uint y, bool jitter, uint pixel_sample,
+                        uint seed) {
+    const glm::dvec2 within =
+        jitter ? pixel_position(y * tiles.width + x, pixel_sample, seed) : glm::dvec2(0.5);
+    return glm::dvec2(x, y) + within;
+}
+
+Ray primary_ray(const Camera& camera, const Tiles& tiles, const glm::dvec2& point) {
+    const double sx = 2 * point.x / tiles.width - 1;
+    const double sy = 1 - 2 * point.y / tiles.height;
+    const glm::dvec3 offset = sx * glm::dvec3(camera.right) + sy * glm::dvec3(camera.up);
+    const glm::dvec3 origin(camera.origin);
+    const glm::dvec3 forward(camera.forward);
+    if (camera.forward.w != 0) return {origin + offset, forward};
+    return {origin, glm::normalize(forward + offset)};
+}
+
+Surface surface_at(const Scene& scene, const Ray& ray, const std::optional<Hit>& hit) {
+    Surface surface{};
+    surface.position.w = -1;
+    if (!hit) return surface;
+    glm::dvec3 v[3];
+    glm::dvec3 smooth(0);
+    const double weights[3] = {1 - hit->u - hit->v, hit->u, hit->v};
+    double extent = 0;
+    for (int k = 0; k < 3; ++k) {
+        const uint index = scene.indices[3 * std::size_t{hit->triangle} + k];
+        v[k] = scene.vertices[index];
+        if (!scene.vertex_normals.empty())
+            smooth += weights[k] * glm::dvec3(scene.vertex_normals[index]);
+        for (int axis = 0; axis < 3; ++axis) extent = std::max(extent, std::abs(v[k][axis]));
+    }
+    glm::dvec3 geometric = glm::normalize(glm::cross(v[1] - v[0], v[2] - v[0]));
+    const bool front = glm::dot(geometric, ray.direction) < 0;
+    if (!front) geometric = -geometric;
+    glm::dvec3 normal = smooth == glm::dvec3(0) ? geometric : glm::normalize(smooth);
+    if (glm::dot(normal, geometric) < 0) normal = -normal;
+    const glm::dvec3 position = v[0] + hit->u * (v[1] - v[0]) + hit->v * (v[2] - v[0]);
+    surface.position = float4(glm::vec3(position), static_cast<float>(hit->t));
+    surface.normal = float4(glm::vec3(normal), 0);
+    surface.geometric = float4(glm::vec3(geometric),
+                               static_cast<float>(static_cast<double>(OFFSET_SCALE) * extent));
+    surface.triangle = hit->triangle;
+    surface.material = scene.triangle_materials[hit->triangle];
+    surface.front = front;
+    return surface;
+}
+
+Surface gbuffer(const Scene& scene, const Tracer& tracer, const Camera& camera, const Tiles& tiles,
+                uint x, uint y, bool jitter, uint pixel_sample, uint seed) {
+    const Ray ray =
+        primary_ray(camera, tiles, sample_point(tiles, x, y, jitter, pixel_sample, seed));
+    return surface_at(scene, ray, tracer.closest_hit(ray));
+}
+
+}  // namespace manylight::reference

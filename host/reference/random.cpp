@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: MIT
+#include "reference/random.hpp"
+
+namespace manylight::reference {
+namespace {
+
+uint mirrored(uint value) {
+    uint out = 0;
+    for (int bit = 0; bit < 32; ++bit) out |= (value >> bit & 1) << (31 - bit);
+    return out;
+}
+
+uint laine_karras(uint value, uint seed) {
+    value += seed;
+    for (const uint factor : {0x6c50b47cu, 0xb82f1e52u, 0xc7afe638u, 0x8d22f6e6u})
+        value ^= value * factor;
+    return value;
+}
+
+// Pascal's triangle modulo 2 gives the generator matrix of Sobol's second dimension.
+uint sobol_second(uint index) {
+    uint out = 0;
+    uint column = 1u << 31;
+    for (int bit = 0; bit < 32; ++bit, column ^= column >> 1)
+        if (index >> bit & 1) out ^= column;
+    return out;
+}
+
+}  // namespace
+
+std::array<uint, 4> random_bits(uint pixel, uint pixel_sample, uint dimension, uint seed) {
+    std::array<uint, 4> v = {pixel, pixel_sample, dimension, seed};
+    for (uint& word : v) word = word * 1664525u + 1013904223u;
+    const auto round = [&v] {
+        v[0] += v[1] * v[3];
+        v[1] += v[2] * v[0];
+        v[2] += v[0] * v[1];
+        v[3] += v[1] * v[2];
+    };
+    round();
+    for (uint& word : v) word ^= word >> 16;
+    round();
+    return v;
+}
+
+double unit_fraction(uint bits) { return (bits >> 8) / 16777216.0; }
+
+glm::dvec2 pixel_position(uint pixel, uint pixel_sample, uint seed) {
+    const auto scramble = random_bits(pixel, 0, 0xffffffffu, seed);
+    // Scrambling works on mirrored digits; the first dimension is the mirrored index.
+    const uint x = mirrored(laine_karras(pixel_sample, scramble[0]));
+    const uint y = mirrored(laine_karras(mirrored(sobol_second(pixel_sample)), scramble[1]));
+    return {unit_fraction(x), unit_fraction(y)};
+}
+
+}  // namespace manylight::reference

@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: MIT
+#include "reference/shading.hpp"
+
+#include <algorithm>
+#include <glm/gtc/constants.hpp>
+
+namespace manylight::reference {
+namespace {
+
+constexpr double pi = glm::pi<double>();
+constexpr double epsilon = std::numeric_limits<float>::epsilon();
+
+// D and V as appendix B of the glTF 2.0 specification writes them.
+double microfacet_distribution(double alpha, double n_h) {
+    const double a2 = alpha * alpha;
+    const double d = n_h * n_h * (a2 - 1) + 1;
+    return a2 / (pi * d * d);
+}
+
+double smith_visibility(double alpha, double n_l, double n_v) {
+    const double a2 = alpha * alpha;
+    const auto term = [a2](double c) { return 1 / (c + std::sqrt(a2 + (1 - a2) * c * c)); };
+    return term(n_l) * term(n_v);
+}
+
+struct Emission {
+    glm::dvec3 towards;  // unit, to the light
+    glm::dvec3 target;   // end of the shadow ray
+    glm::dvec3 light;    // illuminance at normal incidence, lx
+    bool infinite = false;
+};
+
+double range_window(double distance, double range) {
+    if (range == 0) return 1;
+    return std::clamp(1 - std::pow(distance / range, 4), 0.0, 1.0);
+}
+
+Emission punctual(const Light& light, const glm::dvec3& position) {
+    Emission e;
+    e.target = glm::dvec3(light.position);
+    const glm::dvec3 d = e.target - position;
+    const double distance = glm::length(d);
+    e.light = glm::dvec3(0);
+    if (distance == 0) return e;
+    e.towards = d / distance;
+    e.light =
+        glm::dvec3(light.emission) * (range_window(distance, light.axis.w) / (distance * distance));
+    return e;
+}
+
+Emission spot(const Light& light, const glm::dvec3& position) {
+    Emission e = punctual(light, position);
+    const double cosine = glm::dot(-e.towards, glm::dvec3(light.axis));
+    const double cone = std::clamp(cosine * light.edge.x + light.edge.y, 0.0, 1.0);
+    e.light *= cone * cone;
+    return e;
+}
+
+Emission directional(const Light& light) {
+    return {-glm::dvec3(light.axis), glm::dvec3(0), glm::dvec3(light.emission), true};
+}
+
+// Intensity times cosine at `point` of an emitter with that unit normal.
+Emission lambertian(const glm::dvec3& position, const glm::dvec3& point, glm::dvec3 normal,
+                    const glm::dvec3& intensity, double offset, bool both_sides) {
+    Emission e;
+    e.light = glm::dvec3(0);
+    e.target = point;
+    const glm::dvec3 d = point - position;
+    const double squared = glm::dot(d, d);
+    if (squared == 0) return e;
+    e.towards = d / std::sqrt(squared);
+    double cosine = glm::dot(-e.towards, normal);
+    if (cosine < 0 && both_sides) {
+        cosine = -cosine;
+        normal = -normal;
+    }
+    if (cosine <= 0) return e;
+    e.light = intensity * cosine / squared;
+    e.target += normal * offset;
+    return e;
+}
+
+Emission oriented(const Light& light, const glm::dvec3& position) {
+    return lambertian(position, glm::dvec3(light.position), glm::dvec3(light.axis),
+                      glm::dvec3(light.emission), light.edge.w, false);
+}
+
+Emission triangle(const Light& light, const glm::dvec3& position, glm::dvec2 u) {
+    // Which half of the square is decided in single precision.
+    if (static_cast<float>(u.x) + static_cast<float>(u.y) > 1) u = 1.0 - u;
+    const glm::dvec3 e1(light.axis);
+    const glm::dvec3 e2(light.edge);
+    const glm::dvec3 n = glm::cross(e1, e2);
+    const double area = glm::length(n) / 2;
+    return lambertian(position, glm::dvec3(light.position) + u.x * e1 + u.y * e2, n / (2 * area),
+                      glm::dvec3(light.emission) * area, light.edge.w, light.axis.w != 0);
+}
+
+Emission emission(const Light& light, const glm::dvec3& position, const glm::dvec2& u) {
+    switch (static_cast<LightKind>(light.position.w)) {
+        case LIGHT_POINT:
+            return punctual(light, position);
+        case LIGHT_SPOT:
+            return spot(light, position);
+        case LIGHT_DIRECTIONAL:
+            return directional(light);
+        case LIGHT_ORIENTED:
+            return oriented(light, position);
+        case LIGHT_TRIANGLE:
+            return triangle(light, position, u);
+        case light_kind_count:
+            break;
+    }
+    return {};
+}
+
+Unshadowed shade(const glm::dvec3& position, const Surface& surface, const Material& material,
+                 const Camera& camera, const Light& light, const glm::dvec2& u) {
+    const glm::dvec3 normal(surface.normal);
+    const glm::dvec3 geometric(surface.geometric);
+    const Emission e = emission(light, position, u);
+    Unshadowed out;
+    out.value = glm::dvec3(0);
+    if (e.light == glm::dvec3(0)) return out;
+    const double cosine = glm::dot(normal, e.towards);
+    if (cosine <= 0 || glm::dot(geometric, e.towards) <= 0) return out;
+    out.value =
+        brdf(material, normal, e.towards, direction_to_camera(camera, position)) * e.light * cosine;
+    out.shadow.origin = position + geometric * static_cast<double>(surface.geometric.w);
+    out.shadow.direction = e.infinite ? e.towards : e.target - out.shadow.origin;
+    if (!e.infinite) out.shadow.end = 1;
+    return out;
+}
+
+}  // namespace
+
+glm::dvec3 brdf(const Material& material, const glm::dvec3& normal, const glm::dvec3& wi,
+                const glm::dvec3& wo) {
+    const double n_l = glm::dot(normal, wi);
+    if (n_l <= 0) return glm::dvec3(0);
+    const double n_v = std::max(std::abs(glm::dot(normal, wo)), 1e-4);
+    const glm::dvec3 h = glm::normalize(wi + wo);
+    const double lobe = microfacet_distribution(material.roughness, glm::dot(normal, h)) *
+                        smith_visibility(material.roughness, n_l, n_v);
+    const double schlick = std::pow(std::max(1 - std::abs(glm::dot(wo, h)), 0.0), 5);
+    const glm::dvec3 base(material.base_color);
+    const double f90 = material.specular;
+    const double f0 = 0.04 * f90;
+    const double dielectric_fresnel = f0 + (f90 - f0) * schlick;
+    const glm::dvec3 dielectric = glm::mix(base / pi, glm::dvec3(lobe), dielectric_fresnel);
+    const glm::dvec3 metal = lobe * (base + (1.0 - base) * schlick);
+    return glm::mix(dielectric, metal, static_cast<double>(material.base_color.w));
+}
+
+glm::dvec3 direction_to_camera(const Camera& camera, const glm::dvec3& position) {
+    if (camera.forward.w != 0) return -glm::dvec3(camera.forward);
+    return glm::normalize(glm::dvec3(camera.origin) - position);
+}
+
+Unshadowed unshadowed(const Surface& surface, const Material& material, const Camera& camera,
+                      const Light& light, const glm::dvec2& u) {
+    return shade(glm::dvec3(surface.position), surface, material, camera, light, u);
+}
+
+double rounding_slack(const Surface& surface, const Material& material, const Camera& camera,
+                      const Light& light, const glm::dvec2& u) {
+    const glm::dvec3 position(surface.position);
+    const Emission e = emission(light, position, u);
+    const double largest =
+        std::max({std::abs(position.x), std::abs(position.y), std::abs(position.z),
+                  std::abs(e.target.x), std::abs(e.target.y), std::abs(e.target.z)});
+    const double to_light = e.infinite ? 1 : glm::length(e.target - position);
+    const double to_camera = glm::length(glm::dvec3(camera.origin) - position);
+    const double shift = 8 * epsilon * std::max({largest, to_light, to_camera});
+    const glm::dvec3 centre = shade(position, surface, material, camera, light, u).value;
+    double slack = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+        double largest_change = 0;
+        for (const double step : {-shift, shift}) {
+            glm::dvec3 moved = position;
+            moved[axis] += step;
+            const glm::dvec3 value = shade(moved, surface, material, camera, light, u).value;
+            largest_change = std::max(largest_change, glm::length(value - centre));
+        }
+        slack += largest_change;
+    }
+    return slack;
+}
+
+double end_rounding(const Ray& shadow) {
+    const glm::dvec3 end = shadow.origin + (std::isinf(shadow.end) ? 0.0 : 1.0) * shadow.direction;
+    double largest = 0;
+    for (int axis = 0; axis < 3; ++axis)
+        largest = std::max({largest, std::abs(shadow.origin[axis]), std::abs(end[axis])});
+    return 16 * epsilon * largest;
+}
+
+}  // namespace manylight::reference

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "reference/tracing.hpp"
+#include "shared/surface.h"
+
+namespace manylight::reference {
+
+/// glTF 2.0 appendix B with KHR_materials_specular's factor, 1/sr; unit directions away from the
+/// surface.
+[[nodiscard]] glm::dvec3 brdf(const Material& material, const glm::dvec3& normal,
+                              const glm::dvec3& wi, const glm::dvec3& wo);
+
+/// Unit direction from a point to the camera.
+[[nodiscard]] glm::dvec3 direction_to_camera(const Camera& camera, const glm::dvec3& position);
+
+/// Direct light of one light, or of its point u in [0, 1)^2, without visibility.
+struct Unshadowed {
+    glm::dvec3 value;  // f Le G of paper eq. (1), cd/m2
+    Ray shadow;        // the segment to be free
+};
+[[nodiscard]] Unshadowed unshadowed(const Surface& surface, const Material& material,
+                                    const Camera& camera, const Light& light, const glm::dvec2& u);
+
+/// By how much rounding of the surface's position and of directions to single precision can change
+/// the value of unshadowed(): the changes under shifts of the position along each axis by 8 units
+/// in the last place of the coordinates and of the distance to the light, added up.
+[[nodiscard]] double rounding_slack(const Surface& surface, const Material& material,
+                                    const Camera& camera, const Light& light, const glm::dvec2& u);
+
+/// How far single precision moves the ends of a shadow ray, m.
+[[nodiscard]] double end_rounding(const Ray& shadow);
+
+[[nodiscard]] inline double luminance(const glm::dvec3& rgb) {
+    return 0.2126 * rgb.r + 0.7152 * rgb.g + 0.0722 * rgb.b;
+}
+
+}  // namespace manylight::reference

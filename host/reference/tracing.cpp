@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: MIT
+#include "reference/tracing.hpp"
+
+#include <algorithm>
+#include <numeric>
+
+namespace manylight::reference {
+namespace {
+
+glm::dvec3 corner(const Scene& scene, uint triangle, int k) {
+    return scene.vertices[scene.indices[3 * std::size_t{triangle} + k]];
+}
+
+// Where the segment is inside a box, by slabs; boxes are closed.
+bool meets_box(const Ray& ray, const glm::dvec3& lower, const glm::dvec3& upper, double end) {
+    double enter = 0;
+    double leave = end;
+    for (int axis = 0; axis < 3; ++axis) {
+        if (ray.direction[axis] == 0) {
+            if (ray.origin[axis] < lower[axis] || ray.origin[axis] > upper[axis]) return false;
+            continue;
+        }
+        double a = (lower[axis] - ray.origin[axis]) / ray.direction[axis];
+        double b = (upper[axis] - ray.origin[axis]) / ray.direction[axis];
+        if (a > b) std::swap(a, b);
+        const double slack = 1e-12 * (std::abs(a) + std::abs(b));
+        enter = std::max(enter, a - slack);
+        leave = std::min(leave, b + slack);
+    }
+    return enter <= leave;
+}
+
+}  // namespace
+
+Tracer::Tracer(const Scene& scene) : scene_(scene), order_(scene.triangle_count()) {
+    std::iota(order_.begin(), order_.end(), 0u);
+    if (!order_.empty()) root_ = build(0, static_cast<uint>(order_.size()));
+}
+
+int Tracer::build(uint begin, uint end) {
+    Node node{glm::dvec3(1e300), glm::dvec3(-1e300), begin, end};
+    for (uint i = begin; i < end; ++i)
+        for (int k = 0; k < 3; ++k) {
+            node.lower = glm::min(node.lower, corner(scene_, order_[i], k));
+            node.upper = glm::max(node.upper, corner(scene_, order_[i], k));
+        }
+    if (end - begin > 4) {
+        const glm::dvec3 size = node.upper - node.lower;
+        const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+        const uint middle = begin + (end - begin) / 2;
+        const auto centre = [&](uint t) {
+            return corner(scene_, t, 0)[axis] + corner(scene_, t, 1)[axis] +
+                   corner(scene_, t, 2)[axis];
+        };
+        std::nth_element(order_.begin() + begin, order_.begin() + middle, order_.begin() + end,
+                         [&](uint a, uint b) { return centre(a) < centre(b); });
+        node.left = build(begin, middle);
+        node.right = build(middle, end);
+    }
+    nodes_.push_back(node);
+    return static_cast<int>(nodes_.size()) - 1;
+}
+
+// Moeller and Trumbore (1997).
+void Tracer::test(uint triangle, const Ray& ray, std::optional<Hit>& best) const {
+    const glm::dvec3 v0 = corner(scene_, triangle, 0);
+    const glm::dvec3 e1 = corner(scene_, triangle, 1) - v0;
+    const glm::dvec3 e2 = corner(scene_, triangle, 2) - v0;
+    const glm::dvec3 p = glm::cross(ray.direction, e2);
+    const double determinant = glm::dot(e1, p);
+    if (determinant == 0) return;
+    const glm::dvec3 s = ray.origin - v0;
+    const double u = glm::dot(s, p) / determinant;
+    if (u < 0 || u > 1) return;
+    const glm::dvec3 q = glm::cross(s, e1);
+    const double v = glm::dot(ray.direction, q) / determinant;
+    if (v < 0 || u + v > 1) return;
+    const double t = glm::dot(e2, q) / determinant;
+    if (t > 0 && t < (best ? best->t : ray.end)) best = Hit{triangle, t, u, v};
+}
+
+std::optional<Hit> Tracer::closest_hit(const Ray& ray) const {
+    std::optional<Hit> best;
+    std::vector<int> open;
+    if (root_ >= 0) open.push_back(root_);
+    while (!open.empty()) {
+        const Node& node = nodes_[open.back()];
+        open.pop_back();
+        if (!meets_box(ray, node.lower, node.upper, best ? best->t : ray.end)) continue;
+        if (node.left >= 0) {
+            open.push_back(node.right);
+            open.push_back(node.left);
+            continue;
+        }
+        for (uint i = node.begin; i < node.end; ++i) test(order_[i], ray, best);
+    }
+    return best;
+}
+
+std::optional<Hit> Tracer::closest_hit_of_all(const Ray& ray) const {
+    std::optional<Hit> best;
+    for (const uint triangle : order_) test(triangle, ray, best);
+    return best;
+}
+
+std::vector<Ray> Tracer::neighbours(const Ray& ray, double distance) {
+    std::vector<Ray> rays;
+    const double scale = std::isinf(ray.end) ? glm::length(ray.direction) : 1;
+    for (const double size : {1.0, 0.25})
+        for (int k = 0; k < 64; ++k) {
+            const auto corner_of = [&](int bits) {
+                return glm::dvec3(bits & 1 ? 1 : -1, bits & 2 ? 1 : -1, bits & 4 ? 1 : -1) *
+                       (size * distance);
+            };
+            Ray moved = ray;
+            moved.origin += corner_of(k);
+            // The far end moves by as much, or the direction by as much per unit of length.
+            moved.direction += (corner_of(k >> 3) - corner_of(k)) * scale;
+            rays.push_back(moved);
+        }
+    return rays;
+}
+
+bool Tracer::occlusion_is_borderline(const Ray& ray, double distance) const {
+    const bool expected = occluded(ray);
+    for (const Ray& moved : neighbours(ray, distance))
+        if (occluded(moved) != expected) return true;
+    return false;
+}
+
+}  // namespace manylight::reference

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <glm/glm.hpp>
+#include <limits>
+#include <optional>
+#include <vector>
+
+#include "scene/scene.hpp"
+
+namespace manylight::reference {
+
+/// A segment origin + t direction, 0 < t < end, in double precision.
+struct Ray {
+    glm::dvec3 origin;
+    glm::dvec3 direction;
+    double end = std::numeric_limits<double>::infinity();
+};
+
+struct Hit {
+    uint triangle;
+    double t, u, v;  // u, v: weights of vertices 1 and 2
+};
+
+/// Traces rays in double precision through a plain binary tree of its own (median splits).
+class Tracer {
+  public:
+    explicit Tracer(const Scene& scene);
+
+    [[nodiscard]] std::optional<Hit> closest_hit(const Ray& ray) const;
+    [[nodiscard]] bool occluded(const Ray& ray) const { return closest_hit(ray).has_value(); }
+
+    /// The same by testing every triangle: what the tree itself is checked against.
+    [[nodiscard]] std::optional<Hit> closest_hit_of_all(const Ray& ray) const;
+
+    /// Rays that single precision cannot tell from `ray`: both ends moved by up to `distance`.
+    [[nodiscard]] static std::vector<Ray> neighbours(const Ray& ray, double distance);
+
+    /// Whether some neighbour of the ray is occluded and some is not.
+    [[nodiscard]] bool occlusion_is_borderline(const Ray& ray, double distance) const;
+
+  private:
+    struct Node {
+        glm::dvec3 lower, upper;
+        uint begin, end;            // of order_
+        int left = -1, right = -1;  // nodes; -1 for a leaf
+    };
+    int build(uint begin, uint end);
+    void test(uint triangle, const Ray& ray, std::optional<Hit>& best) const;
+
+    const Scene& scene_;
+    std::vector<uint> order_;  // triangles
+    std::vector<Node> nodes_;
+    int root_ = -1;
+};
+
+}  // namespace manylight::reference

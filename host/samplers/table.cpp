@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: MIT
+#include "samplers/table.hpp"
+
+#include "error.hpp"
+
+namespace manylight {
+namespace {
+
+constexpr Sampler samplers[] = {
+    {.name = "exhaustive",
+     .summary = "all lights at every pixel sample: exact, slow",
+     .all_lights = true,
+     .kernel_file = "samplers/exhaustive.cl",
+     .choose_light = reference::choose_exhaustive},
+    {.name = "uniform",
+     .summary = "every light alike",
+     .kernel_file = "samplers/uniform.cl",
+     .choose_light = reference::choose_uniform},
+    {.name = "power",
+     .summary = "lights by their power",
+     .table = Table::power,
+     .shares = {.power = 1},
+     .kernel_file = "samplers/power.cl",
+     .choose_light = reference::choose_power},
+    {.name = "contribution",
+     .summary = "by contribution to the cluster's representative, shadows included (the paper's)",
+     .biased = true,
+     .table = Table::clusters,
+     .shares = {.visible = 1},
+     .kernel_file = "samplers/contribution.cl",
+     .choose_light = reference::choose_contribution},
+    {.name = "contribution-defensive",
+     .summary = "the paper's, mixed with unshadowed contribution and power",
+     .table = Table::clusters,
+     .shares = {.visible = 0.4f, .unshadowed = 0.5f, .power = 0.1f},
+     .kernel_file = "samplers/contribution.cl",
+     .choose_light = reference::choose_contribution},
+};
+
+}  // namespace
+
+std::span<const Sampler> all_samplers() { return samplers; }
+
+const Sampler& find_sampler(std::string_view name) {
+    std::string names;
+    for (const Sampler& sampler : samplers) {
+        if (sampler.name == name) return sampler;
+        names += fmt::format("{}{}", names.empty() ? "" : ", ", sampler.name);
+    }
+    throw InputError("--sampler {}: no such sampler (there are: {})", name, names);
+}
+
+}  // namespace manylight

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: MIT
+// The one table of samplers. Command line, help, verify, tests and documents follow it.
+#pragma once
+
+#include <span>
+#include <string_view>
+
+#include "reference/samples.hpp"
+
+namespace manylight {
+
+/// What a sampler draws from.
+enum class Table {
+    none,
+    power,     // one CDF by the lights' power, for the whole image
+    clusters,  // a CDF per cluster of pixels, from the contribution matrix
+};
+
+/// How the rows of a sampler's CDFs are mixed; see Mixture in shared/contribution.h.
+struct Shares {
+    float visible = 0;
+    float unshadowed = 0;
+    float power = 0;
+};
+
+struct Sampler {
+    std::string_view name;
+    std::string_view summary;  // one line for help
+    bool biased = false;
+    bool all_lights = false;  // light sample i is light i
+    Table table = Table::none;
+    Shares shares = {};
+    std::string_view kernel_file;  // below kernels/
+    reference::ChooseLight choose_light = nullptr;
+};
+
+[[nodiscard]] std::span<const Sampler> all_samplers();
+
+/// Throws InputError for a name that is not in the table.
+[[nodiscard]] const Sampler& find_sampler(std::string_view name);
+
+}  // namespace manylight

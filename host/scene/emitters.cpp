@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <cmath>
+#include <glm/gtc/constants.hpp>
+
+#include "scene/scene.hpp"
+#include "shared/surface.h"
+
+namespace manylight {
+namespace {
+
+struct Emitter {
+    glm::vec3 corner, edge1, edge2;
+    glm::vec3 radiance;
+    bool both_sides;
+    float offset;
+    double power;  // lm
+};
+
+std::vector<Emitter> find_emitters(const Scene& scene) {
+    std::vector<Emitter> emitters;
+    for (std::size_t t = 0; t < scene.triangle_count(); ++t) {
+        const Material& material = scene.materials[scene.triangle_materials[t]];
+        if (glm::vec3(material.emission) == glm::vec3(0)) continue;
+        const glm::vec3 v0 = scene.vertices[scene.indices[3 * t]];
+        const glm::vec3 v1 = scene.vertices[scene.indices[3 * t + 1]];
+        const glm::vec3 v2 = scene.vertices[scene.indices[3 * t + 2]];
+        Emitter e{v0, v1 - v0, v2 - v0, material.emission, material.emission.w != 0, 0, 0};
+        const double area = glm::length(glm::dvec3(glm::cross(e.edge1, e.edge2))) / 2;
+        if (!(area > 0)) continue;
+        const glm::vec3 extent = glm::max(glm::abs(v0), glm::max(glm::abs(v1), glm::abs(v2)));
+        e.offset = OFFSET_SCALE * std::max({extent.x, extent.y, extent.z});
+        e.power = glm::pi<double>() * area * luminance(e.radiance) * (e.both_sides ? 2 : 1);
+        emitters.push_back(e);
+    }
+    return emitters;
+}
+
+Light area_light(const Emitter& e) {
+    return {float4(e.corner, LIGHT_TRIANGLE), float4(e.edge1, e.both_sides ? 1 : 0),
+            float4(e.edge2, e.offset), float4(e.radiance, 0)};
+}
+
+// Emission of power `power` about `normal` from the point (u, v) of an emitter.
+Light oriented_point(const Emitter& e, glm::vec2 u, glm::vec3 normal, double power) {
+    if (u.x + u.y > 1) u = 1.f - u;
+    const glm::vec3 color = e.radiance / luminance(e.radiance);
+    return {float4(e.corner + u.x * e.edge1 + u.y * e.edge2, LIGHT_ORIENTED), float4(normal, 0),
+            float4(0, 0, 0, e.offset),
+            float4(color * static_cast<float>(power / glm::pi<double>()), 0)};
+}
+
+std::vector<Light> make_emitters(const Scene& scene, unsigned points) {
+    const std::vector<Emitter> emitters = find_emitters(scene);
+    std::vector<Light> lights;
+    if (points == 0) {
+        for (const Emitter& e : emitters) lights.push_back(area_light(e));
+        return lights;
+    }
+    double total = 0;
+    for (const Emitter& e : emitters) total += e.power;
+    if (total == 0) return lights;
+    // Point i lies where (i + 1/2) / points of the power is reached; within a triangle the points
+    // follow Roberts' R2 sequence, and on emitters of two sides they take turns.
+    double before = 0;
+    std::size_t next = 0;
+    for (const Emitter& e : emitters) {
+        const glm::vec3 normal = glm::normalize(glm::cross(e.edge1, e.edge2));
+        for (unsigned k = 0; next < points && (next + 0.5) * total / points < before + e.power;
+             ++k, ++next) {
+            const glm::dvec2 u =
+                glm::fract(0.5 + (k + 1.0) * glm::dvec2(0.7548776662466927, 0.5698402909980532));
+            const bool back = e.both_sides && k % 2 == 1;
+            lights.push_back(oriented_point(e, u, back ? -normal : normal, total / points));
+        }
+        before += e.power;
+    }
+    return lights;
+}
+
+// Fills emission.w of every light; see shared/light.h.
+void set_powers(std::vector<Light>& lights, const Bounds& bounds) {
+    constexpr float pi = glm::pi<float>();
+    for (Light& light : lights) {
+        const float brightness = luminance(light.emission);
+        float& power = light.emission.w;
+        switch (static_cast<LightKind>(light.position.w)) {
+            case LIGHT_POINT:
+                power = 4 * pi * brightness;
+                break;
+            case LIGHT_SPOT: {
+                // The integral of clamp(c scale + offset)^2 over the sphere, c the cosine.
+                const float scale = light.edge.x;
+                const float outer = -light.edge.y / scale;
+                const float inner = std::min((1 - light.edge.y) / scale, 1.f);
+                const float at_inner = inner * scale + light.edge.y;
+                power =
+                    2 * pi * brightness * (1 - inner + (inner - outer) * at_inner * at_inner / 3);
+                break;
+            }
+            case LIGHT_DIRECTIONAL:
+                power = brightness * pi * bounds.radius() * bounds.radius();
+                break;
+            case LIGHT_ORIENTED:
+                power = pi * brightness;
+                break;
+            case LIGHT_TRIANGLE: {
+                const float area =
+                    glm::length(glm::cross(glm::vec3(light.axis), glm::vec3(light.edge))) / 2;
+                power = pi * brightness * area * (light.axis.w != 0 ? 2.f : 1.f);
+                break;
+            }
+            case light_kind_count:
+                break;
+        }
+    }
+}
+
+}  // namespace
+
+void add_emitters(Scene& scene, unsigned points) {
+    const std::vector<Light> emitters = make_emitters(scene, points);
+    scene.lights.insert(scene.lights.end(), emitters.begin(), emitters.end());
+    set_powers(scene.lights, scene.bounds());
+}
+
+}  // namespace manylight

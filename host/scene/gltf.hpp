@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: MIT
+// glTF 2.0 files to scenes. What is read and what is warned about: docs/scenes.md.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "scene/scene.hpp"
+
+namespace manylight {
+
+/// Loads a .gltf or .glb file. Throws InputError naming the file, the object and the value for
+/// everything that the glTF 2.0 specification forbids and that loading depends on.
+///
+/// Emissive triangles are no lights yet (see add_emitters), and powers are not set. The first
+/// scene's extras may hold "emitter_points", the number of oriented points that its emitters are
+/// meant to be rendered with.
+[[nodiscard]] Scene load_scene(const std::string& path);
+
+/// A glTF file before it has a meaning.
+struct GltfFile {
+    std::string path;
+    std::vector<unsigned char> bytes;  // the whole file
+    bool is_binary = false;            // .glb
+    nlohmann::json json;
+};
+
+/// Reads and parses; checks the container, the nesting depth and the JSON syntax.
+[[nodiscard]] GltfFile read_gltf(const std::string& path);
+
+/// Checks all values of the JSON: types, ranges, indices, node hierarchy, URIs, versions.
+void check_gltf(const GltfFile& file);
+
+}  // namespace manylight

@@ -1,0 +1,379 @@
+// SPDX-License-Identifier: MIT
+// The checks that the parsing library leaves out. One function per kind of object; each line states
+// a rule of the glTF 2.0 specification or of a KHR extension.
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <set>
+
+#include "scene/gltf.hpp"
+#include "scene/json_value.hpp"
+
+namespace manylight {
+namespace {
+
+class Checker {
+  public:
+    explicit Checker(const GltfFile& file) : file_(file), root_(file.path, "", file.json) {}
+
+    void check() {
+        if (!file_.json.is_object())
+            throw InputError("{}: JSON: {} is not an object", file_.path, root_.shown());
+        asset();
+        extensions();
+        each("buffers", &Checker::buffer);
+        each("bufferViews", &Checker::buffer_view);
+        each("accessors", &Checker::accessor);
+        each("images", &Checker::image);
+        each("textures", &Checker::texture);
+        each("materials", &Checker::material);
+        each("meshes", &Checker::mesh);
+        each("cameras", &Checker::camera);
+        if (root_.has("extensions") && root_["extensions"].object().has(lights_extension)) {
+            const JsonValue lights =
+                root_["extensions"][lights_extension].object()["lights"].array();
+            for (std::size_t i = 0; i < lights.size(); ++i) light(lights.at(i).object());
+            light_count_ = lights.size();
+        }
+        each("skins", &Checker::skin);
+        each("nodes", &Checker::node);
+        hierarchy();
+        each("scenes", &Checker::scene);
+        if (root_.has("scene")) (void)root_["scene"].index(count("scenes"), "scene");
+    }
+
+  private:
+    static constexpr const char* lights_extension = "KHR_lights_punctual";
+    static constexpr const char* emitter_points_key = "emitter_points";
+    static constexpr std::uint64_t most_emitter_points = 1u << 24;
+    static constexpr std::size_t none = ~std::size_t{0};
+
+    [[nodiscard]] std::size_t count(const char* kind) const {
+        return root_.has(kind) ? root_[kind].array().size() : 0;
+    }
+
+    void each(const char* kind, void (Checker::*check)(const JsonValue&, std::size_t)) {
+        for (std::size_t i = 0; i < count(kind); ++i) (this->*check)(root_[kind].at(i).object(), i);
+    }
+
+    void optional_index(const JsonValue& object, const char* key, const char* kind,
+                        const char* what) {
+        if (object.has(key)) (void)object[key].index(count(kind), what);
+    }
+
+    void asset() {
+        const JsonValue asset = root_["asset"].object();
+        if (!asset["version"].string().starts_with("2."))
+            asset["version"].refuse("{} is not 2.x", asset["version"].shown());
+        if (asset.has("minVersion") && asset["minVersion"].string() != "2.0")
+            asset["minVersion"].refuse("{} is newer than 2.0", asset["minVersion"].shown());
+    }
+
+    void extensions() {
+        for (const char* key : {"extensionsUsed", "extensionsRequired"}) {
+            if (!root_.has(key)) continue;
+            const JsonValue names = root_[key].array();
+            for (std::size_t i = 0; i < names.size(); ++i) {
+                const std::string name = names.at(i).string();
+                if (std::string_view(key) == "extensionsUsed") continue;
+                if (name != lights_extension && name != "KHR_materials_emissive_strength" &&
+                    name != "KHR_materials_specular")
+                    names.at(i).refuse("the file cannot be rendered without {}, which is not known",
+                                       name);
+            }
+        }
+    }
+
+    // A data URI, or a relative path that stays in the scene's folder.
+    void uri(const JsonValue& value, bool must_exist) {
+        const std::string text = value.string();
+        if (text.starts_with("data:")) {
+            if (text.find(";base64,") == std::string::npos) value.refuse("the data is not base64");
+            return;
+        }
+        std::string path;
+        for (std::size_t i = 0; i < text.size(); ++i) {
+            if (text[i] != '%' || i + 2 >= text.size() || !std::isxdigit(text[i + 1]) ||
+                !std::isxdigit(text[i + 2])) {
+                path += text[i];
+                continue;
+            }
+            path += static_cast<char>(std::stoi(text.substr(i + 1, 2), nullptr, 16));
+            i += 2;
+        }
+        namespace fs = std::filesystem;
+        if (path.empty() || path.find('\0') != std::string::npos)
+            value.refuse("{} names no file", value.shown());
+        if (path.find(':') != std::string::npos)
+            value.refuse("{}: only files beside the scene are read", value.shown());
+        std::error_code error;
+        const fs::path folder =
+            fs::weakly_canonical(fs::absolute(file_.path, error).parent_path(), error);
+        const fs::path target = fs::weakly_canonical(folder / path, error);
+        if (std::ranges::mismatch(folder, target).in1 != folder.end())
+            value.refuse("{} leads outside the scene's folder", value.shown());
+        if (must_exist && !fs::is_regular_file(target, error))
+            value.refuse("{}: no such file beside the scene", value.shown());
+    }
+
+    void buffer(const JsonValue& buffer, std::size_t i) {
+        if (buffer["byteLength"].integer() == 0) buffer["byteLength"].refuse("0 is no length");
+        if (buffer.has("uri"))
+            uri(buffer["uri"], true);
+        else if (!file_.is_binary || i != 0)
+            buffer.refuse("'uri' is missing (only the first buffer of a .glb has none)");
+    }
+
+    void buffer_view(const JsonValue& view, std::size_t) {
+        const std::size_t buffer = view["buffer"].index(count("buffers"), "buffer");
+        const std::uint64_t offset = view.has("byteOffset") ? view["byteOffset"].integer() : 0;
+        const std::uint64_t length = view["byteLength"].integer();
+        if (length == 0) view["byteLength"].refuse("0 is no length");
+        const std::uint64_t size = root_["buffers"].at(buffer)["byteLength"].integer();
+        if (offset > size || length > size - offset)
+            view.refuse("byteOffset {} and byteLength {} reach beyond buffer {} of {} bytes",
+                        offset, length, buffer, size);
+        if (view.has("byteStride")) {
+            const std::uint64_t stride = view["byteStride"].integer();
+            if (stride < 4 || stride > 252 || stride % 4 != 0)
+                view["byteStride"].refuse("{} is no multiple of 4 within 4 and 252", stride);
+        }
+    }
+
+    static std::size_t component_bytes(const JsonValue& type) {
+        switch (type.integer()) {
+            case 5120:
+            case 5121:
+                return 1;
+            case 5122:
+            case 5123:
+                return 2;
+            case 5125:
+            case 5126:
+                return 4;
+            default:
+                type.refuse("{} is no component type", type.shown());
+        }
+    }
+
+    void accessor(const JsonValue& accessor, std::size_t) {
+        const std::string type =
+            accessor["type"].one_of({"SCALAR", "VEC2", "VEC3", "VEC4", "MAT2", "MAT3", "MAT4"});
+        const std::size_t component = component_bytes(accessor["componentType"]);
+        const std::size_t components = type == "SCALAR" ? 1
+                                       : type == "MAT2" ? 4
+                                       : type == "MAT3" ? 9
+                                       : type == "MAT4" ? 16
+                                                        : type.back() - '0';
+        const std::uint64_t elements = accessor["count"].integer();
+        if (elements == 0) accessor["count"].refuse("0 is no count");
+        for (const char* key : {"min", "max"})
+            if (accessor.has(key)) accessor[key].numbers(components);
+        if (accessor.has("normalized")) accessor["normalized"].boolean();
+        const std::uint64_t offset =
+            accessor.has("byteOffset") ? accessor["byteOffset"].integer() : 0;
+        if (accessor.has("sparse")) (void)accessor["sparse"].object();
+        if (!accessor.has("bufferView")) return;
+        const std::size_t index = accessor["bufferView"].index(count("bufferViews"), "bufferView");
+        const JsonValue view = root_["bufferViews"].at(index);
+        const std::uint64_t length = view["byteLength"].integer();
+        const std::uint64_t element = component * components;
+        const std::uint64_t stride =
+            view.has("byteStride") ? view["byteStride"].integer() : element;
+        if (stride < element)
+            view["byteStride"].refuse("{} is less than the {} bytes of an element of {}", stride,
+                                      element, type);
+        // offset + (elements - 1) stride + element <= length, without overflow
+        if (offset > length || element > length - offset ||
+            elements - 1 > (length - offset - element) / stride)
+            accessor.refuse("count {} at byteOffset {} reaches beyond bufferView {} of {} bytes",
+                            elements, offset, index, length);
+    }
+
+    void image(const JsonValue& image, std::size_t) {
+        if (image.has("uri")) uri(image["uri"], false);
+        optional_index(image, "bufferView", "bufferViews", "bufferView");
+    }
+
+    void texture(const JsonValue& texture, std::size_t) {
+        optional_index(texture, "source", "images", "image");
+        optional_index(texture, "sampler", "samplers", "sampler");
+    }
+
+    void texture_info(const JsonValue& object, const char* key) {
+        if (object.has(key))
+            (void)object[key].object()["index"].index(count("textures"), "texture");
+    }
+
+    void material(const JsonValue& material, std::size_t) {
+        if (material.has("pbrMetallicRoughness")) {
+            const JsonValue pbr = material["pbrMetallicRoughness"].object();
+            if (pbr.has("baseColorFactor")) pbr["baseColorFactor"].colors(4);
+            for (const char* key : {"metallicFactor", "roughnessFactor"})
+                if (pbr.has(key)) (void)pbr[key].within(0, 1);
+            texture_info(pbr, "baseColorTexture");
+            texture_info(pbr, "metallicRoughnessTexture");
+        }
+        for (const char* key : {"normalTexture", "occlusionTexture", "emissiveTexture"})
+            texture_info(material, key);
+        if (material.has("emissiveFactor")) material["emissiveFactor"].colors(3);
+        if (material.has("doubleSided")) material["doubleSided"].boolean();
+        if (material.has("alphaMode"))
+            (void)material["alphaMode"].one_of({"OPAQUE", "MASK", "BLEND"});
+        if (material.has("alphaCutoff")) (void)material["alphaCutoff"].at_least_zero();
+        if (!material.has("extensions")) return;
+        const JsonValue extensions = material["extensions"].object();
+        if (extensions.has("KHR_materials_emissive_strength")) {
+            const JsonValue strength = extensions["KHR_materials_emissive_strength"].object();
+            if (strength.has("emissiveStrength"))
+                (void)strength["emissiveStrength"].at_least_zero();
+        }
+        if (extensions.has("KHR_materials_specular")) {
+            const JsonValue specular = extensions["KHR_materials_specular"].object();
+            if (specular.has("specularFactor")) (void)specular["specularFactor"].within(0, 1);
+            if (specular.has("specularColorFactor")) specular["specularColorFactor"].numbers(3);
+            texture_info(specular, "specularTexture");
+            texture_info(specular, "specularColorTexture");
+        }
+    }
+
+    void mesh(const JsonValue& mesh, std::size_t) {
+        const JsonValue primitives = mesh["primitives"].array();
+        if (primitives.size() == 0) primitives.refuse("a mesh has at least one primitive");
+        if (mesh.has("weights")) mesh["weights"].numbers(mesh["weights"].array().size());
+        for (std::size_t i = 0; i < primitives.size(); ++i) {
+            const JsonValue primitive = primitives.at(i).object();
+            const JsonValue attributes = primitive["attributes"].object();
+            for (const std::string& name : attributes.keys())
+                (void)attributes[name.c_str()].index(count("accessors"), "accessor");
+            optional_index(primitive, "indices", "accessors", "accessor");
+            optional_index(primitive, "material", "materials", "material");
+            if (primitive.has("mode") && primitive["mode"].integer() > 6)
+                primitive["mode"].refuse("{} is no primitive mode", primitive["mode"].shown());
+            if (primitive.has("targets")) (void)primitive["targets"].array();
+        }
+    }
+
+    void camera(const JsonValue& camera, std::size_t) {
+        const std::string type = camera["type"].one_of({"perspective", "orthographic"});
+        const JsonValue lens = camera[type.c_str()].object();
+        if (type == "perspective") {
+            if (lens["yfov"].positive() >= M_PI)
+                lens["yfov"].refuse("{} is not below pi", lens["yfov"].shown());
+            if (lens.has("aspectRatio")) (void)lens["aspectRatio"].positive();
+            (void)lens["znear"].positive();
+        } else {
+            for (const char* key : {"xmag", "ymag"}) (void)lens[key].positive();
+            (void)lens["znear"].at_least_zero();
+            (void)lens["zfar"].positive();
+        }
+    }
+
+    void light(const JsonValue& light) {
+        const std::string type = light["type"].one_of({"point", "spot", "directional"});
+        if (light.has("color")) {
+            light["color"].numbers(3);
+            for (std::size_t i = 0; i < 3; ++i) (void)light["color"].at(i).at_least_zero();
+        }
+        if (light.has("intensity")) (void)light["intensity"].at_least_zero();
+        if (light.has("range")) (void)light["range"].positive();
+        if (type != "spot") return;
+        const JsonValue spot = light["spot"].object();
+        const double outer =
+            spot.has("outerConeAngle") ? spot["outerConeAngle"].positive() : M_PI_4;
+        const double inner =
+            spot.has("innerConeAngle") ? spot["innerConeAngle"].at_least_zero() : 0;
+        if (outer > 1.5707964) spot["outerConeAngle"].refuse("{} is more than pi / 2", outer);
+        if (inner >= outer)
+            spot.refuse("innerConeAngle {} is not below outerConeAngle {}", inner, outer);
+    }
+
+    void skin(const JsonValue& skin, std::size_t) {
+        const JsonValue joints = skin["joints"].array();
+        for (std::size_t i = 0; i < joints.size(); ++i)
+            (void)joints.at(i).index(count("nodes"), "node");
+    }
+
+    void node(const JsonValue& node, std::size_t) {
+        optional_index(node, "mesh", "meshes", "mesh");
+        optional_index(node, "camera", "cameras", "camera");
+        optional_index(node, "skin", "skins", "skin");
+        if (node.has("matrix")) {
+            node["matrix"].numbers(16);
+            for (const char* key : {"translation", "rotation", "scale"})
+                if (node.has(key)) node.refuse("has both 'matrix' and '{}'", key);
+        }
+        if (node.has("translation")) node["translation"].numbers(3);
+        if (node.has("scale")) node["scale"].numbers(3);
+        if (node.has("rotation")) {
+            const JsonValue rotation = node["rotation"];
+            rotation.numbers(4);
+            double squared = 0;
+            for (std::size_t i = 0; i < 4; ++i) squared += std::pow(rotation.at(i).number(), 2);
+            if (std::abs(squared - 1) > 0.01)
+                rotation.refuse("{} is not a unit quaternion", rotation.shown());
+        }
+        if (node.has("weights")) node["weights"].numbers(node["weights"].array().size());
+        if (node.has("extensions") && node["extensions"].object().has(lights_extension))
+            (void)node["extensions"][lights_extension].object()["light"].index(light_count_,
+                                                                               "light");
+    }
+
+    // Every node has at most one parent, and none is its own ancestor.
+    void hierarchy() {
+        std::vector<std::size_t>& parent = parent_;
+        parent.assign(count("nodes"), none);
+        for (std::size_t i = 0; i < parent.size(); ++i) {
+            const JsonValue node = root_["nodes"].at(i);
+            if (!node.has("children")) continue;
+            const JsonValue children = node["children"].array();
+            for (std::size_t c = 0; c < children.size(); ++c) {
+                const std::size_t child = children.at(c).index(parent.size(), "node");
+                if (parent[child] != none)
+                    children.at(c).refuse("node {} is already a child of node {}", child,
+                                          parent[child]);
+                parent[child] = i;
+            }
+        }
+        std::vector<bool> rooted(parent.size(), false);
+        for (std::size_t i = 0; i < parent.size(); ++i) {
+            std::vector<std::size_t> path;
+            std::size_t node = i;
+            for (; node != none && !rooted[node]; node = parent[node]) {
+                if (path.size() > parent.size()) root_["nodes"].at(i).refuse("is its own ancestor");
+                path.push_back(node);
+            }
+            for (const std::size_t n : path) rooted[n] = true;
+        }
+    }
+
+    void scene(const JsonValue& scene, std::size_t) {
+        if (!scene.has("nodes")) return;
+        const JsonValue nodes = scene["nodes"].array();
+        std::set<std::size_t> seen;
+        for (std::size_t i = 0; i < nodes.size(); ++i) {
+            const std::size_t root = nodes.at(i).index(count("nodes"), "node");
+            if (!seen.insert(root).second) nodes.at(i).refuse("node {} is listed twice", root);
+            if (parent_[root] != none)
+                nodes.at(i).refuse("node {} is no root: it is a child of node {}", root,
+                                   parent_[root]);
+        }
+        if (!scene.has("extras")) return;
+        const JsonValue extras = scene["extras"];
+        if (!extras.keys().empty() && extras.has(emitter_points_key) &&
+            extras[emitter_points_key].integer() > most_emitter_points)
+            extras[emitter_points_key].refuse(
+                "{} is more than {}", extras[emitter_points_key].shown(), most_emitter_points);
+    }
+
+    const GltfFile& file_;
+    JsonValue root_;
+    std::size_t light_count_ = 0;
+    std::vector<std::size_t> parent_;  // of each node
+};
+
+}  // namespace
+
+void check_gltf(const GltfFile& file) { Checker(file).check(); }
+
+}  // namespace manylight

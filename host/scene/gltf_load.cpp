@@ -1,0 +1,356 @@
+// SPDX-License-Identifier: MIT
+#define GLM_ENABLE_EXPERIMENTAL
+#include <cstring>
+#include <glm/gtc/matrix_transform.hpp>
+#include <glm/gtc/quaternion.hpp>
+#include <glm/gtc/type_ptr.hpp>
+#include <glm/gtx/component_wise.hpp>
+#include <set>
+
+#include "error.hpp"
+#include "scene/gltf.hpp"
+#include "scene/gltf_parse.hpp"
+
+namespace manylight {
+namespace {
+
+float number(const tinygltf::Value& object, const char* key, double otherwise) {
+    if (!object.IsObject() || !object.Has(key)) return static_cast<float>(otherwise);
+    return static_cast<float>(object.Get(key).GetNumberAsDouble());
+}
+
+const tinygltf::Value& extension(const tinygltf::ExtensionMap& extensions, const char* name) {
+    static const tinygltf::Value none;
+    const auto found = extensions.find(name);
+    return found == extensions.end() ? none : found->second;
+}
+
+glm::dmat4 local_transform(const tinygltf::Node& node) {
+    if (node.matrix.size() == 16) return glm::make_mat4(node.matrix.data());
+    glm::dmat4 m(1.0);
+    if (node.translation.size() == 3)
+        m = glm::translate(m, glm::make_vec3(node.translation.data()));
+    if (node.rotation.size() == 4)
+        m *= glm::mat4_cast(glm::normalize(
+            glm::dquat(node.rotation[3], node.rotation[0], node.rotation[1], node.rotation[2])));
+    if (node.scale.size() == 3) m = glm::scale(m, glm::make_vec3(node.scale.data()));
+    return m;
+}
+
+class Loader {
+  public:
+    explicit Loader(const GltfFile& file) : model_(parse_gltf(file)) { scene_.file = file.path; }
+
+    Scene load() {
+        for (const tinygltf::Material& material : model_.materials) add_material(material);
+        scene_.materials.push_back(default_material());
+        visit_nodes();
+        note_what_is_not_rendered();
+        if (!has_normals_) scene_.vertex_normals.clear();
+        return std::move(scene_);
+    }
+
+  private:
+    // Material of a primitive that names none: glTF's defaults.
+    static Material default_material() { return {float4(1, 1, 1, 1), float4(0), 1, 1, 0, 0}; }
+
+    void add_material(const tinygltf::Material& in) {
+        const auto& pbr = in.pbrMetallicRoughness;
+        const float strength = number(extension(in.extensions, "KHR_materials_emissive_strength"),
+                                      "emissiveStrength", 1);
+        Material m = default_material();
+        m.base_color = float4(pbr.baseColorFactor[0], pbr.baseColorFactor[1],
+                              pbr.baseColorFactor[2], pbr.metallicFactor);
+        m.emission = float4(
+            glm::vec3(in.emissiveFactor[0], in.emissiveFactor[1], in.emissiveFactor[2]) * strength,
+            in.doubleSided ? 1 : 0);
+        const auto roughness = static_cast<float>(pbr.roughnessFactor);
+        m.roughness = std::max(roughness * roughness, SMALLEST_ALPHA);
+        m.specular =
+            number(extension(in.extensions, "KHR_materials_specular"), "specularFactor", 1);
+        if (!std::isfinite(glm::compMax(glm::vec3(m.emission))))
+            throw InputError("{}: materials[{}]: emissiveStrength {} is out of range", scene_.file,
+                             scene_.materials.size(), strength);
+        scene_.materials.push_back(m);
+    }
+
+    void visit_nodes() {
+        std::vector<int> roots;
+        if (!model_.scenes.empty()) {
+            const auto& scene = model_.scenes[std::max(model_.defaultScene, 0)];
+            roots = scene.nodes;
+            if (scene.extras.IsObject() && scene.extras.Has("emitter_points"))
+                scene_.emitter_points = scene.extras.Get("emitter_points").GetNumberAsInt();
+        } else if (!model_.nodes.empty()) {
+            throw InputError("{}: scenes: the file has nodes but no scene", scene_.file);
+        }
+        std::vector<std::pair<int, glm::dmat4>> open;
+        for (auto root = roots.rbegin(); root != roots.rend(); ++root)
+            open.emplace_back(*root, glm::dmat4(1.0));
+        while (!open.empty()) {
+            const auto [index, parent] = open.back();
+            open.pop_back();
+            const tinygltf::Node& node = model_.nodes[index];
+            const glm::dmat4 to_world = parent * local_transform(node);
+            for (int c = 0; c < 4; ++c)
+                for (int r = 0; r < 4; ++r)
+                    if (!std::isfinite(static_cast<float>(to_world[c][r])))
+                        throw InputError("{}: nodes[{}]: its transform is out of range",
+                                         scene_.file, index);
+            if (node.mesh >= 0) add_mesh(node.mesh, to_world);
+            if (node.camera >= 0) add_camera(node, to_world);
+            const auto& light = extension(node.extensions, "KHR_lights_punctual");
+            if (light.IsObject()) add_light(light.Get("light").GetNumberAsInt(), to_world);
+            for (auto child = node.children.rbegin(); child != node.children.rend(); ++child)
+                open.emplace_back(*child, to_world);
+        }
+    }
+
+    void add_camera(const tinygltf::Node& node, const glm::dmat4& to_world) {
+        const tinygltf::Camera& camera = model_.cameras[node.camera];
+        View view;
+        view.name = !node.name.empty() ? node.name : camera.name;
+        if (view.name.empty()) view.name = std::to_string(scene_.views.size());
+        glm::dmat3 axes(to_world);  // without scale: only place and direction count
+        for (int i = 0; i < 3; ++i) axes[i] = glm::normalize(axes[i]);
+        view.to_world = glm::dmat4(axes);
+        view.to_world[3] = to_world[3];
+        view.orthographic = camera.type == "orthographic";
+        if (view.orthographic) {
+            view.aspect = camera.orthographic.xmag / camera.orthographic.ymag;
+            view.half_height = camera.orthographic.ymag;
+        } else {
+            view.aspect = std::max(camera.perspective.aspectRatio, 0.0);
+            view.half_height = std::tan(camera.perspective.yfov / 2);
+        }
+        scene_.views.push_back(view);
+    }
+
+    void add_light(int index, const glm::dmat4& to_world) {
+        const tinygltf::Light& in = model_.lights[index];
+        glm::vec3 color(1);
+        if (in.color.size() == 3) color = glm::vec3(in.color[0], in.color[1], in.color[2]);
+        color *= static_cast<float>(in.intensity);
+        if (color == glm::vec3(0)) return;
+        const glm::dvec3 shines = glm::normalize(glm::dmat3(to_world) * glm::dvec3(0, 0, -1));
+        const auto position = glm::vec3(glm::dvec3(to_world[3]));
+        Light light{float4(position, LIGHT_POINT), float4(glm::vec3(shines), in.range), float4(0),
+                    float4(color, 0)};
+        if (in.type == "spot") {
+            light.position.w = LIGHT_SPOT;
+            const double outer = std::cos(in.spot.outerConeAngle);
+            const double scale = 1 / std::max(0.001, std::cos(in.spot.innerConeAngle) - outer);
+            light.edge = float4(scale, -outer * scale, 0, 0);
+        } else if (in.type == "directional") {
+            light.position.w = LIGHT_DIRECTIONAL;
+            light.axis.w = 0;
+        }
+        scene_.lights.push_back(light);
+    }
+
+    void add_mesh(int index, const glm::dmat4& to_world) {
+        for (std::size_t p = 0; p < model_.meshes[index].primitives.size(); ++p) {
+            const auto& primitive = model_.meshes[index].primitives[p];
+            const std::string where = fmt::format("meshes[{}].primitives[{}]", index, p);
+            if (primitive.mode >= 0 && primitive.mode <= TINYGLTF_MODE_LINE_STRIP) {
+                ++lines_and_points_;
+                continue;
+            }
+            if (!primitive.attributes.contains("POSITION")) {
+                ++without_position_;
+                continue;
+            }
+            add_primitive(primitive, where, to_world);
+        }
+    }
+
+    void add_primitive(const tinygltf::Primitive& primitive, const std::string& where,
+                       const glm::dmat4& to_world) {
+        const std::vector<glm::vec3> positions =
+            read_vectors(primitive.attributes.at("POSITION"), where + ".attributes.POSITION");
+        std::vector<glm::vec3> normals;
+        if (primitive.attributes.contains("NORMAL")) {
+            normals = read_vectors(primitive.attributes.at("NORMAL"), where + ".attributes.NORMAL");
+            if (normals.size() != positions.size())
+                throw InputError("{}: {}.attributes.NORMAL: {} normals for {} positions",
+                                 scene_.file, where, normals.size(), positions.size());
+            has_normals_ = true;
+        }
+        const std::size_t base = scene_.vertices.size();
+        if (base + positions.size() > 0xffffffffu)
+            throw InputError("{}: {}: more than 2^32 vertices", scene_.file, where);
+        const glm::dmat3 linear(to_world);
+        const glm::dmat3 to_normal = glm::transpose(glm::inverse(linear));
+        for (std::size_t v = 0; v < positions.size(); ++v) {
+            scene_.vertices.emplace_back(to_world * glm::dvec4(positions[v], 1));
+            glm::dvec3 normal(0);
+            if (!normals.empty()) {
+                normal = to_normal * glm::dvec3(normals[v]);
+                const double length = glm::length(normal);
+                normal = std::isfinite(length) && length > 0 ? normal / length : glm::dvec3(0);
+            }
+            scene_.vertex_normals.emplace_back(normal);
+            if (!std::isfinite(glm::compAdd(scene_.vertices.back())))
+                throw InputError("{}: {}.attributes.POSITION: vertex {} is not finite", scene_.file,
+                                 where, v);
+        }
+        const bool mirrored = glm::determinant(linear) < 0;  // turns the winding round
+        const int material = primitive.material >= 0 ? primitive.material
+                                                     : static_cast<int>(model_.materials.size());
+        add_triangles(corners(primitive, positions.size(), where), primitive.mode, base, mirrored,
+                      material);
+    }
+
+    void add_triangles(const std::vector<std::uint32_t>& corners, int mode, std::size_t base,
+                       bool mirrored, int material) {
+        const bool list = mode == TINYGLTF_MODE_TRIANGLES || mode == -1;
+        const std::size_t count = list                  ? corners.size() / 3
+                                  : corners.size() >= 3 ? corners.size() - 2
+                                                        : 0;
+        for (std::size_t t = 0; t < count; ++t) {
+            std::size_t c[3] = {3 * t, 3 * t + 1, 3 * t + 2};
+            if (mode == TINYGLTF_MODE_TRIANGLE_STRIP) {
+                c[0] = t, c[1] = t + 1 + t % 2, c[2] = t + 2 - t % 2;
+            } else if (mode == TINYGLTF_MODE_TRIANGLE_FAN) {
+                c[0] = t + 1, c[1] = t + 2, c[2] = 0;
+            }
+            if (mirrored) std::swap(c[1], c[2]);
+            for (const std::size_t corner : c)
+                scene_.indices.push_back(static_cast<std::uint32_t>(base + corners[corner]));
+            scene_.triangle_materials.push_back(material);
+        }
+    }
+
+    // The vertices of a primitive's corners, in order.
+    std::vector<std::uint32_t> corners(const tinygltf::Primitive& primitive, std::size_t vertices,
+                                       const std::string& where) {
+        std::vector<std::uint32_t> corners;
+        if (primitive.indices < 0) {
+            corners.resize(vertices);
+            for (std::size_t i = 0; i < vertices; ++i) corners[i] = static_cast<std::uint32_t>(i);
+        } else {
+            corners = read_indices(primitive.indices, where + ".indices");
+        }
+        for (std::size_t i = 0; i < corners.size(); ++i)
+            if (corners[i] >= vertices)
+                throw InputError("{}: {}.indices: element {} is {}, but there are {} vertices",
+                                 scene_.file, where, i, corners[i], vertices);
+        const bool list = primitive.mode == TINYGLTF_MODE_TRIANGLES || primitive.mode == -1;
+        if (list && corners.size() % 3 != 0)
+            throw InputError("{}: {}: {} corners are no whole number of triangles", scene_.file,
+                             where, corners.size());
+        return corners;
+    }
+
+    struct Elements {
+        const unsigned char* data;
+        std::size_t stride;
+        std::size_t count;
+    };
+
+    // Where an accessor's elements lie; its range was checked by check_gltf().
+    Elements elements(const tinygltf::Accessor& accessor, const std::string& where) {
+        if (accessor.sparse.isSparse)
+            throw InputError("{}: {}: sparse accessors are not supported", scene_.file, where);
+        if (accessor.bufferView < 0)
+            throw InputError("{}: {}: the accessor has no bufferView", scene_.file, where);
+        const tinygltf::BufferView& view = model_.bufferViews[accessor.bufferView];
+        const std::size_t offset = view.byteOffset + accessor.byteOffset;
+        const auto stride = static_cast<std::size_t>(accessor.ByteStride(view));
+        return {model_.buffers[view.buffer].data.data() + offset, stride, accessor.count};
+    }
+
+    std::vector<glm::vec3> read_vectors(int index, const std::string& where) {
+        const tinygltf::Accessor& accessor = model_.accessors[index];
+        if (accessor.type != TINYGLTF_TYPE_VEC3 ||
+            accessor.componentType != TINYGLTF_COMPONENT_TYPE_FLOAT)
+            throw InputError("{}: {}: accessor {} is not VEC3 of float (5126)", scene_.file, where,
+                             index);
+        const Elements in = elements(accessor, where);
+        std::vector<glm::vec3> out(in.count);
+        for (std::size_t i = 0; i < in.count; ++i) {
+            std::memcpy(&out[i], in.data + i * in.stride, sizeof(glm::vec3));
+            if (!std::isfinite(glm::compAdd(out[i] * 0.25f)))
+                throw InputError("{}: {}: element {} ({}, {}, {}) is not finite", scene_.file,
+                                 where, i, out[i].x, out[i].y, out[i].z);
+        }
+        return out;
+    }
+
+    std::vector<std::uint32_t> read_indices(int index, const std::string& where) {
+        const tinygltf::Accessor& accessor = model_.accessors[index];
+        const int type = accessor.componentType;
+        if (accessor.type != TINYGLTF_TYPE_SCALAR ||
+            (type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE &&
+             type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT &&
+             type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT))
+            throw InputError("{}: {}: accessor {} is not SCALAR of an unsigned integer type",
+                             scene_.file, where, index);
+        const Elements in = elements(accessor, where);
+        const int bytes = tinygltf::GetComponentSizeInBytes(type);
+        std::vector<std::uint32_t> out(in.count, 0);  // little-endian: low bytes first
+        for (std::size_t i = 0; i < in.count; ++i)
+            std::memcpy(&out[i], in.data + i * in.stride, bytes);
+        return out;
+    }
+
+    void warn(std::size_t count, const char* what) {
+        if (count > 0)
+            scene_.warnings.push_back(fmt::format("{}: {} {}", scene_.file, count, what));
+    }
+
+    void note_what_is_not_rendered() {
+        std::size_t textured = 0;
+        std::size_t transparent = 0;
+        std::size_t colored_specular = 0;
+        for (const tinygltf::Material& m : model_.materials) {
+            const auto& specular = extension(m.extensions, "KHR_materials_specular");
+            const bool specular_texture =
+                specular.Has("specularTexture") || specular.Has("specularColorTexture");
+            textured += m.pbrMetallicRoughness.baseColorTexture.index >= 0 ||
+                        m.pbrMetallicRoughness.metallicRoughnessTexture.index >= 0 ||
+                        m.normalTexture.index >= 0 || m.emissiveTexture.index >= 0 ||
+                        specular_texture;
+            transparent += m.alphaMode != "OPAQUE";
+            colored_specular += specular.Has("specularColorFactor");
+        }
+        std::size_t morphed = 0;
+        std::size_t colored = 0;
+        for (const tinygltf::Mesh& mesh : model_.meshes)
+            for (const tinygltf::Primitive& primitive : mesh.primitives) {
+                morphed += !primitive.targets.empty();
+                colored += primitive.attributes.contains("COLOR_0");
+            }
+        warn(textured, "materials have textures, which are not rendered; their factors are");
+        warn(transparent, "materials have alpha, which is not rendered; they are opaque");
+        warn(colored_specular, "materials have a specularColorFactor, which is not rendered");
+        warn(model_.skins.size(), "skins are not applied; their meshes keep their rest pose");
+        warn(morphed, "primitives have morph targets, which are not applied");
+        warn(colored, "primitives have vertex colours, which are not rendered");
+        warn(model_.animations.size(), "animations are not applied");
+        warn(lines_and_points_, "primitives are points or lines, which are not rendered");
+        warn(without_position_, "primitives have no POSITION and are not rendered");
+        const std::set<std::string> known = {
+            "KHR_lights_punctual", "KHR_materials_emissive_strength", "KHR_materials_specular"};
+        for (const std::string& name : model_.extensionsUsed)
+            if (!known.contains(name))
+                scene_.warnings.push_back(
+                    fmt::format("{}: extension {} is not rendered", scene_.file, name));
+    }
+
+    tinygltf::Model model_;
+    Scene scene_;
+    bool has_normals_ = false;
+    std::size_t lines_and_points_ = 0;
+    std::size_t without_position_ = 0;
+};
+
+}  // namespace
+
+Scene load_scene(const std::string& path) {
+    const GltfFile file = read_gltf(path);
+    check_gltf(file);
+    return Loader(file).load();
+}
+
+}  // namespace manylight

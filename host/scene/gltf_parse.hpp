@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+// First: tinygltf's implementation includes nlohmann's header as hidden.
+#include "scene/gltf.hpp"
+
+#include <tiny_gltf.h>
+
+namespace manylight {
+
+/// The file as tinygltf's model, buffers filled, images left out; call check_gltf() first.
+[[nodiscard]] tinygltf::Model parse_gltf(const GltfFile& file);
+
+}  // namespace manylight

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: MIT
+#include "scene/scene.hpp"
+
+#include <glm/gtc/matrix_transform.hpp>
+
+#include "error.hpp"
+
+namespace manylight {
+namespace {
+
+View frame_all(const Bounds& bounds) {
+    constexpr double yfov = 0.7;
+    const glm::dvec3 centre = bounds.centre();
+    const double radius = std::max(static_cast<double>(bounds.radius()), 1e-3);
+    const double distance = 1.05 * radius / std::sin(yfov / 2);
+    const glm::dvec3 eye = centre + distance * glm::normalize(glm::dvec3(0.35, 0.3, 1.0));
+    View view;
+    view.name = "framed";
+    view.to_world = glm::inverse(glm::lookAt(eye, centre, glm::dvec3(0, 1, 0)));
+    view.half_height = std::tan(yfov / 2);
+    return view;
+}
+
+}  // namespace
+
+Bounds Scene::bounds() const {
+    Bounds bounds;
+    for (const glm::vec3& vertex : vertices) bounds.add(vertex);
+    return bounds;
+}
+
+Features find_features(const Scene& scene) {
+    Features features;
+    for (const Light& light : scene.lights)
+        features.kinds[static_cast<std::size_t>(light.position.w)] = true;
+    std::vector<bool> used(scene.materials.size(), false);
+    for (const std::uint32_t material : scene.triangle_materials) used[material] = true;
+    for (std::size_t i = 0; i < scene.materials.size(); ++i) {
+        if (!used[i]) continue;
+        const Material& material = scene.materials[i];
+        if (material.base_color.w > 0 || material.specular > 0) features.ggx = true;
+        if (glm::vec3(material.emission) != glm::vec3(0)) features.emission = true;
+    }
+    features.smooth = !scene.vertex_normals.empty();
+    return features;
+}
+
+View find_view(const Scene& scene, const std::string& name) {
+    if (name.empty()) return scene.views.empty() ? frame_all(scene.bounds()) : scene.views.front();
+    std::string names;
+    for (const View& view : scene.views) {
+        if (view.name == name) return view;
+        names += fmt::format("{}'{}'", names.empty() ? "" : ", ", view.name);
+    }
+    throw InputError("{}: --camera {}: no such camera (there are: {})", scene.file, name,
+                     names.empty() ? "none" : names);
+}
+
+Camera make_camera(const View& view, unsigned width, unsigned height) {
+    const double aspect = static_cast<double>(width) / height;
+    const auto vector = [&](const glm::dvec4& v, double w) {
+        return float4(glm::vec3(glm::dvec3(v)), static_cast<float>(w));
+    };
+    Camera camera;
+    camera.origin = vector(view.to_world[3], 0);
+    camera.right = vector(view.to_world[0] * (view.half_height * aspect), 0);
+    camera.up = vector(view.to_world[1] * view.half_height, 0);
+    camera.forward = vector(-view.to_world[2], view.orthographic ? 1 : 0);
+    return camera;
+}
+
+}  // namespace manylight

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: MIT
+// What a scene file means: triangles, materials, lights and cameras in world space (right-handed,
+// y up, metres, glTF's photometric units). Knows no OpenCL.
+#pragma once
+
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "shared/camera.h"
+#include "shared/light.h"
+#include "shared/material.h"
+
+namespace manylight {
+
+/// A camera as the file describes it, or as the scene was framed.
+struct View {
+    std::string name;
+    glm::dmat4 to_world{1.0};  // rigid; looks along its -z
+    bool orthographic = false;
+    double aspect = 0;       // width / height; 0 where the file leaves it to the image
+    double half_height = 0;  // of the image: m if orthographic, otherwise tan(yfov / 2)
+};
+
+struct Bounds {
+    glm::vec3 lower{std::numeric_limits<float>::infinity()};
+    glm::vec3 upper{-std::numeric_limits<float>::infinity()};
+    void add(glm::vec3 p) {
+        lower = glm::min(lower, p);
+        upper = glm::max(upper, p);
+    }
+    [[nodiscard]] bool empty() const { return lower.x > upper.x; }
+    [[nodiscard]] glm::vec3 centre() const {
+        return empty() ? glm::vec3(0) : (lower + upper) / 2.f;
+    }
+    [[nodiscard]] float radius() const { return empty() ? 0 : glm::length(upper - lower) / 2; }
+};
+
+struct Scene {
+    std::string file;                       // as the user named it
+    std::vector<glm::vec3> vertices;        // finite
+    std::vector<glm::vec3> vertex_normals;  // per vertex, unit or 0 where flat; empty if all
+    std::vector<std::uint32_t> indices;     // [3 * triangle + corner] into vertices
+    std::vector<std::uint32_t> triangle_materials;  // [triangle] into materials
+    std::vector<Material> materials;
+    std::vector<Light> lights;
+    std::vector<View> views;
+    std::vector<std::string> warnings;       // what the file holds and is not rendered
+    std::optional<unsigned> emitter_points;  // the file's own wish, see gltf.hpp
+
+    [[nodiscard]] std::size_t triangle_count() const { return triangle_materials.size(); }
+    [[nodiscard]] Bounds bounds() const;
+};
+
+/// Which kernel code a scene needs.
+struct Features {
+    bool kinds[light_kind_count] = {};  // by LightKind
+    bool ggx = false;                   // a material is more than Lambert's
+    bool smooth = false;                // a mesh has vertex normals
+    bool emission = false;              // emitters can be seen
+};
+
+[[nodiscard]] Features find_features(const Scene& scene);
+
+/// Luminance, linear Rec. 709.
+[[nodiscard]] inline float luminance(glm::vec3 rgb) {
+    return 0.2126f * rgb.r + 0.7152f * rgb.g + 0.0722f * rgb.b;
+}
+
+/// Adds the lights of a scene's emissive triangles and sets the power of every light. `points` 0:
+/// one area light per triangle. Otherwise that many oriented points of equal power, spread over all
+/// emissive triangles by power (paper section 5); their total power, as luminance, is the
+/// triangles'. Triangles without area emit nothing.
+void add_emitters(Scene& scene, unsigned points);
+
+/// The camera of that name, or the first for an empty name; a scene without cameras is framed from
+/// the front, above and right. Throws InputError for a name that the file does not have.
+[[nodiscard]] View find_view(const Scene& scene, const std::string& name);
+
+/// The camera for an image of that size; keeps the view's height where the aspect differs.
+[[nodiscard]] Camera make_camera(const View& view, unsigned width, unsigned height);
+
+}  // namespace manylight

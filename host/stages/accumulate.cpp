@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: MIT
+#include "stages/accumulate.hpp"
+
+namespace manylight {
+
+AccumulateStage::AccumulateStage(Device& device, const DeviceScene& scene)
+    : scene_(scene.arguments),
+      add_(device.kernel("accumulate.cl", "accumulate_add", scene.emission, "accumulate")) {}
+
+void AccumulateStage::add(const Tiles& tiles, const Buffer<Surface>& surfaces,
+                          const Buffer<float4>& estimates, Buffer<float4>& image) {
+    add_.launch(item_count(tiles), Arguments(scene_)
+                                       .set("tiles", tiles)
+                                       .set("surfaces", surfaces)
+                                       .set("estimates", estimates)
+                                       .set("image", image));
+}
+
+}  // namespace manylight

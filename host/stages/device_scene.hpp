@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "bvh/wide.hpp"
+#include "device/device.hpp"
+#include "scene/scene.hpp"
+
+namespace manylight {
+
+/// A scene on a device, seen by one camera: what every stage reads.
+struct DeviceScene {
+    Arguments arguments;  // camera, bvh_*, vertices, indices, materials, lights, light_count, ...
+    Defines traversal;    // for kernels that trace rays
+    Defines surfaces;     // for kernels that make surfaces of hits
+    Defines shading;      // for kernels that evaluate lights and materials, traversal included
+    Defines emission;     // for kernels that add what surfaces emit
+    uint light_count = 0;
+};
+
+/// Lanes of a BVH node and of a triangle block that suit a device.
+[[nodiscard]] unsigned lanes_for(const DeviceInfo& device);
+
+/// Uploads a scene whose lights are complete (add_emitters).
+[[nodiscard]] DeviceScene upload_scene(Device& device, const Scene& scene, const WideBvh& bvh,
+                                       const Camera& camera);
+
+}  // namespace manylight

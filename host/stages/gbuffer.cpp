@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: MIT
+#include "stages/gbuffer.hpp"
+
+namespace manylight {
+
+GBufferStage::GBufferStage(Device& device, const DeviceScene& scene)
+    : scene_(scene.arguments),
+      trace_(device.kernel("gbuffer.cl", "gbuffer_trace", scene.surfaces, "gbuffer")) {}
+
+void GBufferStage::trace(const Tiles& tiles, const PixelSample& sample, Buffer<Surface>& surfaces) {
+    trace_.launch(item_count(tiles), Arguments(scene_)
+                                         .set("tiles", tiles)
+                                         .set("jitter", uint{sample.jitter})
+                                         .set("pixel_sample", sample.index)
+                                         .set("seed", sample.seed)
+                                         .set("surfaces", surfaces));
+}
+
+}  // namespace manylight

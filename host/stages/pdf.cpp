@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: MIT
+#include "stages/pdf.hpp"
+
+namespace manylight {
+
+PdfStage::PdfStage(Device& device, const DeviceScene& scene)
+    : scene_(scene.arguments),
+      quantise_(device.kernel("pdf.cl", "pdf_quantise", {}, "pdf")),
+      scan_(device.kernel("pdf.cl", "pdf_scan", {}, "pdf")),
+      add_(device.kernel("pdf.cl", "pdf_add", {}, "pdf")) {}
+
+void PdfStage::normalise(uint count, const Mixture& mixture, Matrix& matrix) {
+    const uint chunks = chunk_count(matrix.light_count);
+    Arguments arguments = scene_;
+    arguments.set("cdf", matrix.values)
+        .set("row_count", count)
+        .set("totals", matrix.totals)
+        .set("mixture", mixture)
+        .set("chunks", chunks)
+        .set("chunk_sums", matrix.chunk_widths);
+    quantise_.launch(std::size_t{count} * chunks, arguments);
+    if (chunks == 1) return;
+    scan_.launch(count, arguments);
+    add_.launch(std::size_t{count} * chunks, arguments);
+}
+
+}  // namespace manylight

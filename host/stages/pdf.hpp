@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "stages/contributions.hpp"
+
+namespace manylight {
+
+/// Stage pdf: rows of the contribution matrix to CDFs (paper 4.2, eq. (6)); see
+/// shared/contribution.h.
+class PdfStage {
+  public:
+    PdfStage(Device& device, const DeviceScene& scene);
+
+    /// Turns rows 0 to count of the matrix to CDFs, in place: row entry `light` becomes the sum of
+    /// the integer widths of lights 0 to `light`.
+    void normalise(uint count, const Mixture& mixture, Matrix& matrix);
+
+  private:
+    Arguments scene_;
+    Kernel quantise_;
+    Kernel scan_;
+    Kernel add_;
+};
+
+}  // namespace manylight

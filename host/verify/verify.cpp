@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: MIT
+#include "verify/verify.hpp"
+
+#include <algorithm>
+#include <cstring>
+
+namespace manylight {
+
+void Check::compare(double difference, double tolerance, const std::string& item) {
+    ++items;
+    if (difference <= tolerance) {
+        if (difference > 0) largest = std::max(largest, difference / tolerance);
+        return;
+    }
+    largest = std::max(largest, tolerance > 0 ? difference / tolerance : 1e30);
+    if (failed++ == 0) first_failure = item;
+}
+
+Verifier::Verifier(Device device, const Scene& scene, const Camera& camera,
+                   const VerifyOptions& options)
+    : device_(device),
+      scene_(scene),
+      camera_(camera),
+      options_(options),
+      tiles_(all_tiles(options.width, options.height, options.clusters.tile_size)),
+      reach_(reach_of(scene, camera)),
+      bvh_(build_wide_bvh(scene, lanes_for(device.info()), lanes_for(device.info()), reach_)),
+      device_scene_(upload_scene(device_, scene, bvh_, camera)),
+      tracer_(scene),
+      surfaces_(device_.allocate<Surface>(item_count(tiles_))),
+      clustering_(device_, device_scene_, options.clusters, tiles_.count) {
+    GBufferStage(device_, device_scene_).trace(tiles_, {}, surfaces_);
+    found_ = surfaces_.download();
+    if (scene.lights.empty()) return;
+    clustering_.build(tiles_, surfaces_, [](std::size_t) {});
+    const std::vector<uint> words =
+        clustering_.matrix().values.download(0, clustering_.regions().size() * scene.lights.size());
+    matrix_.resize(words.size());
+    std::memcpy(matrix_.data(), words.data(), words.size() * sizeof(float));
+}
+
+Mixture Verifier::mixture(const Sampler& sampler) const {
+    double total = 0;
+    for (const Light& light : scene_.lights) total += light.emission.w;
+    return {sampler.shares.visible, sampler.shares.unshadowed, sampler.shares.power,
+            static_cast<float>(total)};
+}
+
+std::vector<Check> Verifier::all() {
+    std::vector<Check> checks = {layout(),        random(),     gbuffer(false),
+                                 gbuffer(true),   clusters(),   representatives(),
+                                 contributions(), refinement(), accumulate()};
+    for (const Sampler& sampler : all_samplers()) {
+        if (sampler.table != Table::none) checks.push_back(pdf(sampler));
+        checks.push_back(samples(sampler));
+    }
+    return checks;
+}
+
+}  // namespace manylight

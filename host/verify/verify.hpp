@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: MIT
+// Every kernel against its scalar reference, on the same inputs.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "pipeline/clustering.hpp"
+#include "reference/samples.hpp"
+#include "stages/gbuffer.hpp"
+
+namespace manylight {
+
+/// One stage's comparison.
+struct Check {
+    std::string stage;
+    std::size_t items = 0;
+    std::size_t failed = 0;          // items beyond the tolerance
+    std::size_t borderline = 0;      // items that rounding of the inputs decides either way
+    double largest = 0;              // difference over tolerance, of the items that were compared
+    std::string tolerance;           // in words, with its reason
+    std::string first_failure = {};  // the first failed item and both values
+
+    /// Nothing failed, and no more is borderline than rays that graze edges explain.
+    [[nodiscard]] bool passed() const { return failed == 0 && borderline <= 2 + items / 200; }
+    /// Counts an item; `difference` beyond `tolerance` fails it.
+    void compare(double difference, double tolerance, const std::string& item);
+    void compare_exact(bool equal, const std::string& item) { compare(equal ? 0 : 2, 1, item); }
+};
+
+struct VerifyOptions {
+    unsigned width = 96;
+    unsigned height = 96;
+    uint seed = 1;
+    ClusterOptions clusters;
+    std::size_t most_entries = 40'000;  // of a stage that the reference evaluates
+};
+
+/// Runs the stages on a device and judges each by the reference. The scene's lights are complete.
+class Verifier {
+  public:
+    Verifier(Device device, const Scene& scene, const Camera& camera, const VerifyOptions& options);
+
+    [[nodiscard]] Check layout();
+    [[nodiscard]] Check random();
+    [[nodiscard]] Check gbuffer(bool jitter);
+    [[nodiscard]] Check clusters();
+    [[nodiscard]] Check representatives();
+    [[nodiscard]] Check contributions();
+    [[nodiscard]] Check refinement();
+    [[nodiscard]] Check pdf(const Sampler& sampler);
+    [[nodiscard]] Check samples(const Sampler& sampler);
+    [[nodiscard]] Check accumulate();
+
+    /// All of them, for every sampler in the table.
+    [[nodiscard]] std::vector<Check> all();
+
+  private:
+    [[nodiscard]] Mixture mixture(const Sampler& sampler) const;
+    void check_surface(Check& check, const Surface& found, uint x, uint y, bool jitter);
+
+    Device device_;
+    const Scene& scene_;
+    Camera camera_;
+    VerifyOptions options_;
+    Tiles tiles_;
+    float reach_;
+    WideBvh bvh_;
+    DeviceScene device_scene_;
+    reference::Tracer tracer_;
+    Buffer<Surface> surfaces_;    // at the pixels' centres
+    std::vector<Surface> found_;  // the same, on the host
+    Clustering clustering_;
+    std::vector<float> matrix_;  // downloaded before it became a PDF
+};
+
+}  // namespace manylight

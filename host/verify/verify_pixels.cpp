@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: MIT
+// Stages that work on single pixels: layout and random numbers, gbuffer, accumulate.
+#include <algorithm>
+#include <cstddef>
+
+#include "reference/accumulate.hpp"
+#include "reference/gbuffer.hpp"
+#include "reference/random.hpp"
+#include "reference/tiles.hpp"
+#include "shared/layout.h"
+#include "stages/accumulate.hpp"
+#include "verify/tolerances.hpp"
+#include "verify/verify.hpp"
+
+namespace manylight {
+
+Check Verifier::layout() {
+    Check check{.stage = "layout", .tolerance = exact};
+    std::vector<uint> expected;
+    std::vector<std::string> names;
+#define EXPECT_FIELD(type, field)              \
+    expected.push_back(offsetof(type, field)); \
+    names.push_back(#type "." #field);
+    SHARED_FIELDS(EXPECT_FIELD)
+#undef EXPECT_FIELD
+    Buffer<uint> offsets = device_.allocate<uint>(expected.size());
+    device_.kernel("probe.cl", "probe_layout", {}, "probe")
+        .launch(1, Arguments().set("offsets", offsets));
+    const std::vector<uint> found = offsets.download();
+    for (std::size_t i = 0; i < expected.size(); ++i)
+        check.compare_exact(found[i] == expected[i], fmt::format("{} is at byte {}, not {}",
+                                                                 names[i], found[i], expected[i]));
+    return check;
+}
+
+Check Verifier::random() {
+    Check check{.stage = "random", .tolerance = exact};
+    const uint count = 4096;
+    Buffer<std::array<uint, 4>> bits = device_.allocate<std::array<uint, 4>>(count);
+    Buffer<glm::vec2> positions = device_.allocate<glm::vec2>(count);
+    device_.kernel("probe.cl", "probe_random", {}, "probe")
+        .launch(count, Arguments()
+                           .set("count", count)
+                           .set("seed", options_.seed)
+                           .set("bits", bits)
+                           .set("positions", positions));
+    const auto found_bits = bits.download();
+    const auto found_positions = positions.download();
+    for (uint i = 0; i < count; ++i) {
+        check.compare_exact(found_bits[i] == reference::random_bits(i, i ^ 5, i * 7, options_.seed),
+                            fmt::format("random_bits of item {}", i));
+        check.compare_exact(
+            glm::dvec2(found_positions[i]) == reference::pixel_position(i / 16, i, options_.seed),
+            fmt::format("pixel_position of item {}", i));
+    }
+    return check;
+}
+
+Check Verifier::gbuffer(bool jitter) {
+    Check check{.stage = jitter ? "gbuffer (jittered)" : "gbuffer",
+                .tolerance = "8 eps of the coordinates x triangle's length / height / cosine"};
+    std::vector<Surface> found = found_;
+    const uint sample = 3;
+    if (jitter) {
+        Buffer<Surface> surfaces = device_.allocate<Surface>(item_count(tiles_));
+        GBufferStage(device_, device_scene_).trace(tiles_, {sample, options_.seed, true}, surfaces);
+        found = surfaces.download();
+    }
+    reference::for_each_pixel(tiles_, [&](uint x, uint y, std::size_t item) {
+        check_surface(check, found[item], x, y, jitter);
+    });
+    return check;
+}
+
+void Verifier::check_surface(Check& check, const Surface& found, uint x, uint y, bool jitter) {
+    const reference::Ray ray = reference::primary_ray(
+        camera_, tiles_, reference::sample_point(tiles_, x, y, jitter, 3, options_.seed));
+    const auto hit = tracer_.closest_hit(ray);
+    const Surface expected = reference::surface_at(scene_, ray, hit);
+    const std::string where = fmt::format("pixel ({}, {})", x, y);
+    const bool found_hit = found.position.w >= 0;
+    if (found_hit != hit.has_value() || (found_hit && found.triangle != hit->triangle)) {
+        // Another triangle is right if a ray that rounding cannot tell apart hits it.
+        for (const reference::Ray& moved :
+             reference::Tracer::neighbours(ray, 16 * epsilon * reach_)) {
+            const auto other = tracer_.closest_hit(moved);
+            if (other.has_value() != found_hit) continue;
+            if (other && other->triangle != found.triangle) continue;
+            ++check.borderline;
+            ++check.items;
+            return;
+        }
+        check.compare(2, 1, where + ": another triangle is hit");
+        return;
+    }
+    if (!found_hit) return check.compare(0, 1, where);
+    glm::dvec3 v[3];
+    for (int k = 0; k < 3; ++k)
+        v[k] = scene_.vertices[scene_.indices[3 * std::size_t{found.triangle} + k]];
+    const glm::dvec3 cross = glm::cross(v[1] - v[0], v[2] - v[0]);
+    const double longest =
+        std::max({glm::length(v[1] - v[0]), glm::length(v[2] - v[1]), glm::length(v[0] - v[2])});
+    const double height = glm::length(cross) / longest;
+    const double cosine = std::abs(glm::dot(glm::normalize(cross), ray.direction));
+    const double shift = 8 * epsilon * reach_ * (longest / height) / std::max(cosine, 1e-6);
+    check.compare(glm::length(glm::dvec3(found.position) - glm::dvec3(expected.position)), shift,
+                  fmt::format("{}: position {} is not {}", where, show(found.position),
+                              show(expected.position)));
+    check.compare(
+        std::abs(double{found.position.w} - expected.position.w), shift,
+        fmt::format("{}: distance {} is not {}", where, found.position.w, expected.position.w));
+    const double normal_shift = 16 * epsilon * (1 + reach_ / height);
+    check.compare(glm::length(glm::dvec3(found.geometric) - glm::dvec3(expected.geometric)),
+                  normal_shift,
+                  fmt::format("{}: geometric normal {} is not {}", where, show(found.geometric),
+                              show(expected.geometric)));
+    check.compare(
+        glm::length(glm::dvec3(found.normal) - glm::dvec3(expected.normal)),
+        normal_shift + 4 * shift / height,
+        fmt::format("{}: normal {} is not {}", where, show(found.normal), show(expected.normal)));
+    check.compare(std::abs(double{found.geometric.w} - expected.geometric.w),
+                  4 * epsilon * expected.geometric.w, where + ": offset");
+    check.compare_exact(found.material == expected.material && found.front == expected.front,
+                        where + ": material or side");
+}
+
+Check Verifier::accumulate() {
+    Check check{.stage = "accumulate", .tolerance = exact};
+    std::vector<float4> estimates(item_count(tiles_));
+    for (std::size_t i = 0; i < estimates.size(); ++i)
+        estimates[i] = float4(0.5f + static_cast<float>(i % 97), 2, 0.25f, 3);
+    std::vector<float4> sums(std::size_t{tiles_.width} * tiles_.height, float4(1, 2, 3, 4));
+    Buffer<float4> image = device_.upload(sums);
+    const Buffer<float4> device_estimates = device_.upload(estimates);
+    AccumulateStage(device_, device_scene_).add(tiles_, surfaces_, device_estimates, image);
+    const std::vector<float4> found = image.download();
+    reference::for_each_pixel(tiles_, [&](uint x, uint y, std::size_t item) {
+        const std::size_t pixel = std::size_t{y} * tiles_.width + x;
+        const float4 expected =
+            reference::accumulated(sums[pixel], found_[item], estimates[item], scene_);
+        check.compare_exact(found[pixel] == expected, fmt::format("pixel ({}, {})", x, y));
+    });
+    return check;
+}
+
+}  // namespace manylight

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: MIT
+// Stage contributions: the cluster x light matrix of C(a, y), paper eq. (4) and (5).
+#include "lib/direct.h"
+#include "shared/contribution.h"
+#include "shared/tiles.h"
+
+// An emitter with area is judged by its centroid.
+#define CENTROID (float2)(1.0f / 3.0f)
+
+// contributions[row * light_count + light], cd/m2 (luminance): what the light would contribute to
+// the row's representative with V = 1, negative where something is in between. Item i is light
+// i % light_count of row first_row + i / light_count.
+KERNEL void contributions_evaluate(Camera camera, BVH_PARAMETERS, __global const Surface* surfaces,
+                                   __global const Material* materials, __global const Light* lights,
+                                   uint light_count, __global const uint* representatives,
+                                   uint first_row, uint row_count, __global float* contributions) {
+    const ulong item = get_global_id(0);
+    const uint row = (uint)(item / light_count);
+    if (row >= row_count) return;
+    const uint light = (uint)(item % light_count);
+    const uint representative = representatives[first_row + row];
+    float value = 0.0f;
+    if (representative != NO_ITEM) {
+        const Receiver receiver = make_receiver(surfaces + representative, materials, camera);
+        Ray shadow;
+        value = luminance(unshadowed(&receiver, lights + light, CENTROID, &shadow));
+        if (value > 0.0f && occluded(BVH_ARGUMENTS, shadow)) value = -value;
+    }
+    contributions[(ulong)(first_row + row) * light_count + light] = value;
+}
+
+// sums[row * chunks + chunk]: one work-item adds up LIGHT_CHUNK lights of a row, in order.
+KERNEL void contributions_sum(__global const float* contributions, uint light_count, uint first_row,
+                              uint row_count, __global RowSum* sums) {
+    const uint chunks = (light_count + LIGHT_CHUNK - 1u) / LIGHT_CHUNK;
+    const uint row = (uint)(get_global_id(0) / chunks);
+    if (row >= row_count) return;
+    const uint chunk = (uint)(get_global_id(0) % chunks);
+    const uint end = min((chunk + 1u) * LIGHT_CHUNK, light_count);
+    __global const float* values = contributions + (ulong)(first_row + row) * light_count;
+    RowSum sum = {0.0f, 0.0f, 0u, 0u};
+    for (uint light = chunk * LIGHT_CHUNK; light < end; ++light) {
+        const float value = values[light];
+        sum.unshadowed += fabs(value);
+        sum.visible += max(value, 0.0f);
+        sum.visible_count += value > 0.0f ? 1u : 0u;
+        sum.facing_count += value != 0.0f ? 1u : 0u;
+    }
+    sums[(first_row + row) * chunks + chunk] = sum;
+}
+
+// totals[row]: the row's chunks added up, in order.
+KERNEL void contributions_total(__global const RowSum* sums, uint chunks, uint first_row,
+                                uint row_count, __global RowSum* totals) {
+    const uint item = get_global_id(0);
+    if (item >= row_count) return;
+    const uint row = first_row + item;
+    RowSum total = {0.0f, 0.0f, 0u, 0u};
+    for (uint chunk = 0u; chunk < chunks; ++chunk) {
+        const RowSum sum = sums[row * chunks + chunk];
+        total.visible += sum.visible;
+        total.unshadowed += sum.unshadowed;
+        total.visible_count += sum.visible_count;
+        total.facing_count += sum.facing_count;
+    }
+    totals[row] = total;
+}

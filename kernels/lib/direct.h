@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: MIT
+// Direct illumination of a surface point by one light: V f Le G, paper eq. (1).
+#ifndef MANYLIGHT_LIB_DIRECT_H
+#define MANYLIGHT_LIB_DIRECT_H
+
+#include "lib/brdf.h"
+#include "lib/bvh.h"
+#include "lib/camera.h"
+#include "lib/lights.h"
+#include "shared/surface.h"
+
+// A surface point with all that its shading needs.
+typedef struct Receiver {
+    float3 position;
+    float3 normal;
+    float3 geometric;
+    float3 to_camera;
+    float offset;
+    Material material;
+} Receiver;
+
+static bool surface_missed(__global const Surface* surface) { return surface->position.w < 0.0f; }
+
+static Receiver make_receiver(__global const Surface* surface, __global const Material* materials,
+                              Camera camera) {
+    Receiver r;
+    r.position = surface->position.xyz;
+    r.normal = surface->normal.xyz;
+    r.geometric = surface->geometric.xyz;
+    r.offset = surface->geometric.w;
+    r.to_camera = direction_to_camera(camera, r.position);
+    r.material = materials[surface->material];
+    return r;
+}
+
+// f Le G, cd/m2, of a light (of its point u), without visibility; 0 if the light is behind the
+// surface. `shadow` gets the segment that has to be free.
+static float3 unshadowed(const Receiver* r, __global const Light* light, float2 u, Ray* shadow) {
+    const LightSample s = sample_light(light, r->position, u);
+    const float cosine = dot(r->normal, s.direction);
+    if (cosine <= 0.0f || dot(r->geometric, s.direction) <= 0.0f) return (float3)(0.0f);
+    shadow->origin = r->position + r->geometric * r->offset;
+    shadow->direction = s.infinite ? s.direction : s.target - shadow->origin;
+    shadow->end = s.infinite ? INFINITY : 1.0f;
+    return brdf(r->material, r->normal, s.direction, r->to_camera) * s.emitted * cosine;
+}
+
+#endif

@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: MIT
+// The kinds of light, one function each; only the kinds of the scene at hand are compiled
+// (HAS_POINT, HAS_SPOT, ...). Fields: shared/light.h.
+#ifndef MANYLIGHT_LIB_LIGHTS_H
+#define MANYLIGHT_LIB_LIGHTS_H
+
+#include "lib/common.h"
+#include "shared/light.h"
+
+// A light, or a point of it, as a surface point sees it.
+typedef struct LightSample {
+    float3 direction;  // unit, to the light
+    float3 target;     // where the shadow ray ends, unless the light is infinitely far
+    float3 emitted;    // Le and the light's part of G: illuminance at normal incidence, lx
+    bool infinite;
+} LightSample;
+
+static LightSample sample_towards(float3 position, float3 target) {
+    LightSample s;
+    s.target = target;
+    s.direction = target - position;
+    s.emitted = (float3)(0.0f);
+    s.infinite = false;
+    return s;
+}
+
+#if HAS_POINT || HAS_SPOT
+// The falloff that KHR_lights_punctual recommends; normalises the direction.
+static float punctual_falloff(LightSample* s, float range) {
+    const float squared = dot(s->direction, s->direction);
+    if (squared == 0.0f) return 0.0f;
+    s->direction *= 1.0f / sqrt(squared);
+    if (range == 0.0f) return 1.0f / squared;
+    const float ratio = squared / (range * range);
+    return clamp(1.0f - ratio * ratio, 0.0f, 1.0f) / squared;
+}
+#endif
+
+#if HAS_POINT
+static LightSample light_point(__global const Light* light, float3 position, float2 u) {
+    LightSample s = sample_towards(position, light->position.xyz);
+    s.emitted = light->emission.xyz * punctual_falloff(&s, light->axis.w);
+    return s;
+}
+#endif
+
+#if HAS_SPOT
+static LightSample light_spot(__global const Light* light, float3 position, float2 u) {
+    LightSample s = sample_towards(position, light->position.xyz);
+    const float falloff = punctual_falloff(&s, light->axis.w);
+    const float cosine = -dot(s.direction, light->axis.xyz);
+    const float cone = clamp(cosine * light->edge.x + light->edge.y, 0.0f, 1.0f);
+    s.emitted = light->emission.xyz * (falloff * cone * cone);
+    return s;
+}
+#endif
+
+#if HAS_DIRECTIONAL
+static LightSample light_directional(__global const Light* light, float3 position, float2 u) {
+    LightSample s;
+    s.direction = -light->axis.xyz;
+    s.target = (float3)(0.0f);
+    s.emitted = light->emission.xyz;
+    s.infinite = true;
+    return s;
+}
+#endif
+
+#if HAS_ORIENTED || HAS_TRIANGLE
+// Intensity I along the normal gives I cos / d^2. `normal` may have any length, which scales;
+// shadow rays end `offset` before the emitter. Normalises the direction.
+static void emit_cosine(LightSample* s, float3 intensity, float3 normal, float offset,
+                        bool both_sides) {
+    const float squared = dot(s->direction, s->direction);
+    if (squared == 0.0f) return;
+    s->direction *= 1.0f / sqrt(squared);
+    float cosine = -dot(s->direction, normal);
+    if (cosine < 0.0f && both_sides) {
+        cosine = -cosine;
+        normal = -normal;
+    }
+    if (cosine <= 0.0f) return;
+    s->emitted = intensity * (cosine / squared);
+    s->target += normal * (offset / length(normal));
+}
+#endif
+
+#if HAS_ORIENTED
+static LightSample light_oriented(__global const Light* light, float3 position, float2 u) {
+    LightSample s = sample_towards(position, light->position.xyz);
+    emit_cosine(&s, light->emission.xyz, light->axis.xyz, light->edge.w, false);
+    return s;
+}
+#endif
+
+#if HAS_TRIANGLE
+// A uniform point of the triangle; the normal's length is twice the area.
+static LightSample light_triangle(__global const Light* light, float3 position, float2 u) {
+    if (u.x + u.y > 1.0f) u = 1.0f - u;
+    const float3 edge1 = light->axis.xyz;
+    const float3 edge2 = light->edge.xyz;
+    LightSample s = sample_towards(position, light->position.xyz + edge1 * u.x + edge2 * u.y);
+    emit_cosine(&s, light->emission.xyz * 0.5f, cross(edge1, edge2), light->edge.w,
+                light->axis.w != 0.0f);
+    return s;
+}
+#endif
+
+// The light, or its point chosen by u in [0, 1)^2, seen from `position`.
+static LightSample sample_light(__global const Light* light, float3 position, float2 u) {
+    switch ((uint)light->position.w) {
+#if HAS_POINT
+        case LIGHT_POINT:
+            return light_point(light, position, u);
+#endif
+#if HAS_SPOT
+        case LIGHT_SPOT:
+            return light_spot(light, position, u);
+#endif
+#if HAS_DIRECTIONAL
+        case LIGHT_DIRECTIONAL:
+            return light_directional(light, position, u);
+#endif
+#if HAS_ORIENTED
+        case LIGHT_ORIENTED:
+            return light_oriented(light, position, u);
+#endif
+#if HAS_TRIANGLE
+        case LIGHT_TRIANGLE:
+            return light_triangle(light, position, u);
+#endif
+    }
+    LightSample none = sample_towards(position, position);
+    return none;
+}
+
+// Whether every sample of the light is the same.
+static bool is_single_point(__global const Light* light) {
+    return (uint)light->position.w != LIGHT_TRIANGLE;
+}
+
+#endif

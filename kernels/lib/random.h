@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: MIT
+// Random numbers by counter: the same pixel, sample and seed give the same numbers on any device.
+#ifndef MANYLIGHT_LIB_RANDOM_H
+#define MANYLIGHT_LIB_RANDOM_H
+
+#include "lib/common.h"
+
+// Four uniform 32-bit integers: pcg4d of Jarzynski and Olano, "Hash Functions for GPU Rendering"
+// (JCGT 9:3, 2020).
+static uint4 random_bits(uint pixel, uint pixel_sample, uint dimension, uint seed) {
+    uint4 v = (uint4)(pixel, pixel_sample, dimension, seed) * 1664525u + 1013904223u;
+    v.x += v.y * v.w;
+    v.y += v.z * v.x;
+    v.z += v.x * v.y;
+    v.w += v.y * v.z;
+    v ^= v >> 16u;
+    v.x += v.y * v.w;
+    v.y += v.z * v.x;
+    v.z += v.x * v.y;
+    v.w += v.y * v.z;
+    return v;
+}
+
+// The dimension that seeds the position of a pixel's samples; light samples use their own index.
+#define RANDOM_PIXEL_POSITION 0xffffffffu
+
+// A float in [0, 1) from the top 24 bits.
+static float unit_float(uint bits) { return (float)(bits >> 8) * 0x1p-24f; }
+
+static uint reverse_bits(uint v) {
+    v = (v >> 16) | (v << 16);
+    v = ((v >> 8) & 0x00ff00ffu) | ((v & 0x00ff00ffu) << 8);
+    v = ((v >> 4) & 0x0f0f0f0fu) | ((v & 0x0f0f0f0fu) << 4);
+    v = ((v >> 2) & 0x33333333u) | ((v & 0x33333333u) << 2);
+    return ((v >> 1) & 0x55555555u) | ((v & 0x55555555u) << 1);
+}
+
+// Nested uniform scrambling of a base-2 digit sequence: Burley, "Practical Hash-based Owen
+// Scrambling" (JCGT 9:4, 2020).
+static uint owen_scramble(uint v, uint seed) {
+    v = reverse_bits(v);
+    v += seed;
+    v ^= v * 0x6c50b47cu;
+    v ^= v * 0xb82f1e52u;
+    v ^= v * 0xc7afe638u;
+    v ^= v * 0x8d22f6e6u;
+    return reverse_bits(v);
+}
+
+// Where in its pixel a pixel sample lies, in [0, 1)^2: the first two dimensions of Sobol's
+// sequence, Owen-scrambled, so that every power of two of samples is stratified.
+static float2 pixel_position(uint pixel, uint pixel_sample, uint seed) {
+    const uint4 scramble = random_bits(pixel, 0u, RANDOM_PIXEL_POSITION, seed);
+    uint y = 0u;
+    uint direction = 0x80000000u;
+    for (uint i = pixel_sample; i != 0u; i >>= 1) {
+        if (i & 1u) y ^= direction;
+        direction ^= direction >> 1;
+    }
+    return (float2)(unit_float(owen_scramble(reverse_bits(pixel_sample), scramble.x)),
+                    unit_float(owen_scramble(y, scramble.y)));
+}
+
+#endif

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: MIT
+// The fields of all shared structs, X(type, field), for comparing their offsets on both sides.
+#ifndef MANYLIGHT_SHARED_LAYOUT_H
+#define MANYLIGHT_SHARED_LAYOUT_H
+
+#include "shared/camera.h"
+#include "shared/contribution.h"
+#include "shared/light.h"
+#include "shared/material.h"
+#include "shared/surface.h"
+#include "shared/tiles.h"
+
+// clang-format off
+#define SHARED_FIELDS(X)                                                                           \
+    X(Camera, origin) X(Camera, right) X(Camera, up) X(Camera, forward)                            \
+    X(Surface, position) X(Surface, normal) X(Surface, geometric) X(Surface, triangle)             \
+    X(Surface, material) X(Surface, front)                                                         \
+    X(Material, base_color) X(Material, emission) X(Material, roughness) X(Material, specular)     \
+    X(Light, position) X(Light, axis) X(Light, edge) X(Light, emission)                            \
+    X(Tiles, width) X(Tiles, height) X(Tiles, size) X(Tiles, columns) X(Tiles, first)              \
+    X(Tiles, count)                                                                                \
+    X(Region, x) X(Region, y) X(Region, size) X(Region, level) X(Region, first_sibling)            \
+    X(Region, siblings)                                                                            \
+    X(RowSum, visible) X(RowSum, unshadowed) X(RowSum, visible_count) X(RowSum, facing_count)      \
+    X(Mixture, visible) X(Mixture, unshadowed) X(Mixture, power) X(Mixture, total_power)
+// clang-format on
+
+#endif

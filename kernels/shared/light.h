@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: MIT
+#ifndef MANYLIGHT_SHARED_LIGHT_H
+#define MANYLIGHT_SHARED_LIGHT_H
+
+#include "shared/types.h"
+
+SHARED_BEGIN
+
+/// The kinds of light, X(name, NAME, value). A kind is a row here, `light_<name>` in
+/// kernels/lib/lights.h and a case in host/reference/lights.cpp.
+#define LIGHT_KINDS(X)             \
+    X(point, POINT, 0)             \
+    X(spot, SPOT, 1)               \
+    X(directional, DIRECTIONAL, 2) \
+    X(oriented, ORIENTED, 3)       \
+    X(triangle, TRIANGLE, 4)
+
+#define LIGHT_KIND_VALUE(name, NAME, value) LIGHT_##NAME = value,
+enum LightKind { LIGHT_KINDS(LIGHT_KIND_VALUE) light_kind_count = 5 };
+#undef LIGHT_KIND_VALUE
+
+/// One light, world space, metres, glTF's photometric units.
+///
+///             position.xyz  axis.xyz           edge.xyz              emission.rgb
+/// point       position      -                  -                     intensity, cd
+/// spot        position      unit, where it     x: angle scale,       intensity on the axis, cd
+///                           shines             y: angle offset
+/// directional -             unit, where it     -                     illuminance, lx
+///                           shines
+/// oriented    position      unit normal        -                     intensity along the normal,
+/// cd triangle    vertex 0      vertex 1 - 0       vertex 2 - 0          radiance, cd/m2
+///
+/// Angle scale and offset are those of KHR_lights_punctual; an oriented point is Lambert's
+/// (cosine).
+typedef struct Light {
+    float4 position;  // w: the LightKind
+    float4 axis;      // w: point, spot: range in m, 0 if unlimited; triangle: 1 if both sides emit
+    float4 edge;      // w: oriented, triangle: distance by which shadow rays end before the light
+    float4 emission;  // w: luminous power, lm (directional: through the scene's bounding disc)
+} Light;
+SHARED_SIZE(Light, 64)
+
+SHARED_END
+
+#endif

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: MIT
+#ifndef MANYLIGHT_SHARED_MATERIAL_H
+#define MANYLIGHT_SHARED_MATERIAL_H
+
+#include "shared/types.h"
+
+SHARED_BEGIN
+
+/// glTF's metallic-roughness material with the factor of KHR_materials_specular.
+typedef struct Material {
+    float4 base_color;  // rgb: linear; w: metallic, 0 to 1
+    float4 emission;    // rgb: radiance, cd/m2, emitted by the front side; w: 1 if both sides emit
+    float roughness;    // GGX alpha, at least SMALLEST_ALPHA
+    float specular;     // 0 to 1; a material with metallic and specular 0 is Lambert's
+    float padding0;
+    float padding1;
+} Material;
+SHARED_SIZE(Material, 48)
+
+/// Below this GGX alpha, single precision cannot resolve the lobe (1 - cos of its width is 1e-6).
+#define SMALLEST_ALPHA 1e-3f
+
+SHARED_END
+
+#endif

@@ -1,0 +1,55 @@
+#!/usr/bin/env bash
+# Installs what building and running manylight needs on Debian 12; does nothing where all is there.
+#
+# usage: scripts/install.sh [--tests] [--no-intel]
+#   --tests     also what the tests need: GoogleTest, Python, Clang (to lint kernels), oiiotool, and
+#               Intel's OpenCL runtime for CPUs, where the processor is x86-64 (830 MB, into
+#               ~/.cache/manylight), so that two vendors' compilers run every kernel
+#   --no-intel  without Intel's runtime
+set -euo pipefail
+
+tests=false
+intel=true
+for argument in "$@"; do
+    case $argument in
+        --tests) tests=true ;;
+        --no-intel) intel=false ;;
+        *) echo "install.sh: unknown option $argument" >&2; exit 2 ;;
+    esac
+done
+
+packages=(
+    g++ cmake ninja-build
+    ocl-icd-opencl-dev opencl-c-headers opencl-clhpp-headers pocl-opencl-icd
+    libopenimageio-dev openimageio-tools libglm-dev libtinygltf-dev nlohmann-json3-dev
+    libcli11-dev libfmt-dev
+)
+if $tests; then
+    packages+=(libgtest-dev python3 python3-venv clang-15)
+fi
+
+missing=()
+for package in "${packages[@]}"; do
+    dpkg-query -W -f '${Status}' "$package" 2>/dev/null | grep -q 'ok installed' || missing+=("$package")
+done
+if ((${#missing[@]} > 0)); then
+    as_root=()
+    if (($(id -u) != 0)); then
+        as_root=(sudo)
+    fi
+    echo "installing: ${missing[*]}"
+    "${as_root[@]}" apt-get update -qq
+    DEBIAN_FRONTEND=noninteractive "${as_root[@]}" apt-get install -y -qq --no-install-recommends \
+        "${missing[@]}" >/dev/null
+fi
+
+if $tests && $intel && [[ $(uname -m) == x86_64 ]]; then
+    venv=${XDG_CACHE_HOME:-$HOME/.cache}/manylight/intel-opencl
+    if [[ ! -e $venv/lib/libintelocl.so ]]; then
+        echo "installing Intel's OpenCL runtime into $venv"
+        rm -rf "$venv"
+        python3 -m venv "$venv"
+        "$venv/bin/pip" install --quiet --disable-pip-version-check \
+            intel-opencl-rt intel-cmplr-lib-rt
+    fi
+fi

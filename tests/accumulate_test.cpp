@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: MIT
+#include "support.hpp"
+
+namespace manylight {
+
+TEST(accumulate, agrees_with_the_reference) {
+    FOR_EACH_DEVICE(device)
+    for (const std::string& scene : test::scene_names()) {
+        SCOPED_TRACE(scene);
+        test::expect_pass(test::verifier(scene, device).accumulate());
+    }
+}
+
+}  // namespace manylight

@@ -1,0 +1,196 @@
+# SPDX-License-Identifier: MIT
+"""Runs whole commands as a user would: files made, messages, exit codes.
+
+usage: commands.py MANYLIGHT SCENES
+"""
+import json
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+
+PROGRAM = str(pathlib.Path(sys.argv.pop(1)).resolve())
+SCENES = pathlib.Path(sys.argv.pop(1)).resolve()
+
+
+class CommandTest(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+        self.cornell = str(SCENES / "cornell.glb")
+
+    def run_program(self, *arguments, code=0):
+        run = subprocess.run([PROGRAM, *map(str, arguments)], capture_output=True, text=True,
+                             cwd=self.folder, timeout=120)
+        self.assertEqual(run.returncode, code, run.stdout + run.stderr)
+        return run
+
+    def refuse(self, *arguments, words, code=2):
+        run = self.run_program(*arguments, code=code)
+        self.assertEqual(len(run.stderr.splitlines()), 1, run.stderr)
+        self.assertTrue(run.stderr.startswith("error: "), run.stderr)
+        for word in words:
+            self.assertIn(word, run.stderr)
+
+    def files(self):
+        return sorted(path.name for path in self.folder.iterdir())
+
+    # What render makes.
+
+    def test_render_by_default_makes_a_png_here(self):
+        run = self.run_program("render", self.cornell, "--height", 32)
+        self.assertEqual(self.files(), ["cornell.png"])
+        self.assertIn("64 lights", run.stdout)
+        self.assertIn("matrix", run.stdout)  # what memory will be needed
+        self.assertEqual(run.stderr, "")     # no progress bar where there is no terminal
+
+    def test_render_outputs_and_stats(self):
+        self.run_program("render", self.cornell, "--height", 24, "--width", 40, "-o", "a.exr", "-o",
+                         "b.png", "--stats", "s.json", "--cluster-map", "c.png", "--sampler",
+                         "contribution", "--light-samples", 3, "--spp", 2, "--seed", 7, "--quiet")
+        self.assertEqual(self.files(), ["a.exr", "b.png", "c.png", "s.json"])
+        stats = json.loads((self.folder / "s.json").read_text())
+        for key, value in dict(sampler="contribution", light_samples=3, spp=2, seed=7, width=40,
+                               height=24, lights=64).items():
+            self.assertEqual(stats[key], value, key)
+        self.assertGreater(stats["clusters"], 3)
+        self.assertGreater(stats["rays"]["primary"], 2 * 40 * 24 - 1)
+        self.assertGreater(stats["rays"]["shadow"], 0)
+        self.assertGreater(stats["memory_bytes"]["device_peak"], stats["memory_bytes"]["matrix"])
+        self.assertGreater(stats["memory_bytes"]["matrix"], 0)
+        self.assertTrue(stats["device"])
+        self.assertEqual(sorted(stats["seconds"]),
+                         ["build", "compile", "load", "prepare", "render", "total"])
+        self.assertLess(sum(v for k, v in stats["seconds"].items() if k != "total"),
+                        stats["seconds"]["total"] * 1.02)
+
+    def test_quiet_prints_nothing(self):
+        run = self.run_program("render", self.cornell, "--height", 8, "-q")
+        self.assertEqual(run.stdout + run.stderr, "")
+
+    def test_same_seed_same_image(self):
+        for name in ("a.exr", "b.exr"):
+            self.run_program("render", self.cornell, "--height", 32, "--seed", 3, "-o", name)
+        run = self.run_program("compare", "a.exr", "b.exr", "--json")
+        self.assertEqual(json.loads(run.stdout)["rmse"], 0)
+        self.run_program("render", self.cornell, "--height", 32, "--seed", 4, "-o", "b.exr")
+        run = self.run_program("compare", "a.exr", "b.exr", "--json")
+        self.assertGreater(json.loads(run.stdout)["relmse"], 0)
+
+    def test_aovs_are_layers(self):
+        self.run_program("render", self.cornell, "--height", 16, "-o", "a.exr", "--aov",
+                         "normal,depth", "--aov", "lights")
+
+    def test_emitter_points(self):
+        for points, lights in ((0, 2), (9, 9)):
+            self.run_program("render", self.cornell, "--height", 8, "--emitter-points", points,
+                             "--stats", "s.json", "-q")
+            self.assertEqual(json.loads((self.folder / "s.json").read_text())["lights"], lights)
+
+    def test_warnings_do_not_stop(self):
+        scene = json.loads('{"asset": {"version": "2.0"}, "extensionsUsed": ["KHR_lights_ies"]}')
+        (self.folder / "dark.gltf").write_text(json.dumps(scene))
+        run = self.run_program("render", "dark.gltf", "--height", 8)
+        self.assertIn("warning: dark.gltf: extension KHR_lights_ies", run.stderr)
+        self.assertIn("no lights", run.stderr)
+        self.assertIn("dark.png", self.files())
+
+    # What is refused.
+
+    def test_bad_options(self):
+        out = ["-o", "x.exr"]
+        for arguments, words in (
+                (["--sampler", "magic"], ["--sampler", "magic", "uniform"]),
+                (["--light-samples", 0], ["--light-samples", "0"]),
+                (["--light-samples", "many"], ["--light-samples", "many"]),
+                (["--spp", -1], ["--spp", "-1"]),
+                (["--spp", 2.5], ["--spp", "2.5"]),
+                (["--seed", 2**32], ["--seed", str(2**32)]),
+                (["--width", 0], ["--width", "0"]),
+                (["--height", 70000], ["--height", "70000"]),
+                (["--memory", "lots"], ["--memory", "lots"]),
+                (["--memory", "1M"], ["--memory", "1 MiB"]),
+                (["--device", "abacus"], ["--device", "abacus"]),
+                (["--device", 99], ["--device", "99"]),
+                (["--camera", "top"], ["--camera", "top", "front"]),
+                (["--threads", 1000], ["--threads", "1000"]),
+                (["--tile-size", 33], ["--tile-size", "33"]),
+                (["--max-depth", 8], ["--max-depth", "8"]),
+                (["--visibility-threshold", 1.5], ["--visibility-threshold", "1.5"]),
+                (["--aov", "smell"], ["--aov", "smell"]),
+                (["--aov", "cluster", "--sampler", "power"], ["--aov", "cluster", "power"]),
+                (["--exposure", "bright"], ["--exposure", "bright"]),
+                (["--colour"], ["--colour"])):
+            with self.subTest(arguments=arguments):
+                self.refuse("render", self.cornell, *out, *arguments, words=words)
+                self.assertEqual(self.files(), [])
+
+    def test_bad_outputs(self):
+        (self.folder / "folder.exr").mkdir()
+        for name, words in (("a.jpg", ["a.jpg", ".exr"]), ("no/a.exr", ["no/a.exr", "folder"]),
+                            ("folder.exr", ["folder.exr", "regular"])):
+            with self.subTest(name=name):
+                self.refuse("render", self.cornell, "-o", name, words=words)
+
+    def test_layers_need_an_exr(self):
+        self.refuse("render", self.cornell, "-o", "a.png", "--aov", "depth", words=["--aov", ".exr"])
+
+    def test_a_refusal_keeps_the_old_output(self):
+        old = self.folder / "a.exr"
+        old.write_bytes(b"precious")
+        (self.folder / "bad.gltf").write_text("{}")
+        self.refuse("render", "bad.gltf", "-o", "a.exr", words=["bad.gltf", "asset"])
+        self.refuse("render", self.cornell, "-o", "a.exr", "--memory", "1M", words=["--memory"])
+        self.assertEqual(old.read_bytes(), b"precious")
+        self.assertEqual(self.files(), ["a.exr", "bad.gltf"])
+
+    def test_missing_arguments(self):
+        self.refuse(words=["subcommand"])
+        self.refuse("render", words=["file"])
+        self.refuse("scene", "cornell", words=["--output"])
+
+    # The other commands.
+
+    def test_scene(self):
+        self.run_program("scene", "pinhole", "-o", "p.glb")
+        self.assertEqual((self.folder / "p.glb").read_bytes(), (SCENES / "pinhole.glb").read_bytes())
+        self.run_program("scene", "city", "--lights", 50, "-o", "c.glb")
+        self.refuse("scene", "village", "-o", "v.glb", words=["village", "cornell"])
+        self.refuse("scene", "cornell", "-o", "c.gltf", words=["c.gltf", ".glb"])
+        self.refuse("scene", "cornell", "-o", "no/c.glb", words=["no/c.glb"], code=1)
+        self.refuse("scene", "dragon", "--mesh", "none.glb", "-o", "d.glb", words=["none.glb"])
+        self.assertEqual(self.files(), ["c.glb", "p.glb"])
+
+    def test_verify(self):
+        run = self.run_program("verify", SCENES / "pinhole.glb", "--width", 40)
+        for stage in ("layout", "random", "gbuffer", "clusters", "representatives", "contributions",
+                      "refinement", "pdf", "samples", "accumulate"):
+            self.assertIn(stage, run.stdout)
+        self.assertIn("computes correctly", run.stdout)
+        self.assertNotIn("FAIL", run.stdout)
+
+    def test_devices(self):
+        run = self.run_program("devices")
+        self.assertIn("0: ", run.stdout)
+        self.assertIn("(default)", run.stdout)
+
+    def test_compare(self):
+        for name, spp in (("a.exr", 1), ("b.exr", 2)):
+            self.run_program("render", self.cornell, "--height", 16, "--spp", spp, "-o", name, "-q")
+        self.assertIn("relMSE", self.run_program("compare", "a.exr", "b.exr").stdout)
+        self.run_program("render", self.cornell, "--height", 8, "-o", "c.exr", "-q")
+        self.refuse("compare", "a.exr", "c.exr", words=["a.exr", "16", "c.exr", "8"])
+        self.refuse("compare", "a.exr", "none.exr", words=["none.exr"])
+
+    def test_help(self):
+        self.assertIn("render", self.run_program("--help").stdout)
+        for command in ("render", "verify", "scene", "compare"):
+            text = self.run_program(command, "--help").stdout
+            self.assertIn("Example", text)
+        self.assertIn("0.1", self.run_program("--version").stdout)
+
+
+if __name__ == "__main__":
+    unittest.main()

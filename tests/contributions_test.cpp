@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: MIT
+#include "reference/contributions.hpp"
+
+#include <cstring>
+
+#include "support.hpp"
+
+namespace manylight {
+
+TEST(contributions, agree_with_the_reference) {
+    FOR_EACH_DEVICE(device)
+    for (const std::string& scene : test::scene_names()) {
+        SCOPED_TRACE(scene);
+        test::expect_pass(test::verifier(scene, device).contributions());
+    }
+}
+
+// Two lights over a plane, one of them behind a board: values and signs by hand.
+TEST(contributions, hidden_lights_are_negative) {
+    const test::TestScene scene = test::make_scene(
+        [](GltfWriter& out) {
+            Mesh plane;
+            plane.add_quad({-5, 0, 5}, {10, 0, 0}, {0, 0, -10});
+            Mesh board;
+            board.add_quad({0.5f, 1, 0.5f}, {1, 0, 0}, {0, 0, -1});
+            out.add_mesh("plane", plane, out.add_diffuse(glm::vec3(0.5f)));
+            out.add_mesh("board", board, out.add_diffuse(glm::vec3(0.5f)));
+            out.add_point({0, 2, 0}, glm::vec3(8));
+            out.add_point({2, 2, 0}, glm::vec3(8));
+            out.add_camera("down", {0, 4, 0.001f}, {0, 0, 0}, 0.002f, 1);
+        },
+        8, 8);
+    const float pi = 3.14159265f;
+    FOR_EACH_DEVICE(device) {
+        Device d = device;
+        const unsigned lanes = lanes_for(d.info());
+        const WideBvh bvh = build_wide_bvh(scene.scene, lanes, lanes, 5);
+        const DeviceScene uploaded = upload_scene(d, scene.scene, bvh, scene.camera);
+        const Tiles tiles = all_tiles(8, 8, 8);
+        Buffer<Surface> surfaces = d.allocate<Surface>(64);
+        GBufferStage(d, uploaded).trace(tiles, {}, surfaces);
+        Matrix matrix(d, 2, 2);
+        const Buffer<uint> representatives = d.upload(std::vector<uint>{0, NO_ITEM});
+        ContributionStage(d, uploaded)
+            .evaluate(surfaces, representatives, 0, 2, matrix, [](std::size_t) {});
+        const std::vector<uint> words = matrix.values.download();
+        float values[4];
+        std::memcpy(values, words.data(), sizeof(values));
+        EXPECT_NEAR(values[0], 0.5f / pi * 8 / 4, 2e-3);  // f I / d^2, straight above
+        // Direction (2, 2, 0): distance^2 8, cosine 1 / sqrt 2; the board is in between.
+        EXPECT_NEAR(values[1], -0.5f / pi * 8 / 8 / std::sqrt(2.f), 2e-3);
+        EXPECT_EQ(values[2], 0);
+        EXPECT_EQ(values[3], 0);
+        const std::vector<RowSum> totals = matrix.totals.download();
+        EXPECT_EQ(totals[0].visible, values[0]);
+        EXPECT_EQ(totals[0].unshadowed, values[0] - values[1]);
+        EXPECT_EQ(totals[0].visible_count, 1u);
+        EXPECT_EQ(totals[0].facing_count, 2u);
+        EXPECT_EQ(totals[1].facing_count, 0u);
+    }
+}
+
+}  // namespace manylight

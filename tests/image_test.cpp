@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: MIT
+#include "output/image.hpp"
+
+#include <OpenImageIO/imageio.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "error.hpp"
+#include "output/metrics.hpp"
+#include "support.hpp"
+
+namespace manylight {
+namespace {
+
+Image gradient(unsigned width, unsigned height) {
+    Image image(width, height, {"R", "G", "B"});
+    for (std::size_t i = 0; i < image.values.size(); ++i)
+        image.values[i] = 0.01f * static_cast<float>(i);
+    return image;
+}
+
+std::string contents(const std::string& path) {
+    std::ifstream in(path, std::ios::binary);
+    return {std::istreambuf_iterator<char>(in), {}};
+}
+
+}  // namespace
+
+TEST(image, exr_keeps_floats_layers_and_header) {
+    const std::string path = test::temporary("a.exr");
+    Image color = gradient(7, 5);
+    color.values[0] = 1e30f;  // no half float
+    Image depth(7, 5, {"depth.Z"});
+    depth.values[3] = 42;
+    write_exr(path, {color, depth}, {{"manylight:sampler", "power"}, {"manylight:spp", 3}});
+    EXPECT_EQ(read_rgb(path).values, color.values);
+    const auto in = OIIO::ImageInput::open(path);
+    ASSERT_TRUE(in);
+    EXPECT_EQ(in->spec().format, OIIO::TypeDesc::FLOAT);
+    EXPECT_EQ(in->spec().nchannels, 4);
+    const int channel = in->spec().channelindex("depth.Z");
+    ASSERT_GE(channel, 0);
+    std::vector<float> pixels(7 * 5 * 4);
+    in->read_image(0, 0, 0, -1, OIIO::TypeDesc::FLOAT, pixels.data());
+    EXPECT_EQ(pixels[3 * 4 + channel], 42);
+    EXPECT_EQ(in->spec().get_string_attribute("manylight:sampler"), "power");
+    EXPECT_EQ(in->spec().get_int_attribute("manylight:spp"), 3);
+}
+
+// sRGB (IEC 61966-2-1): 0.5 is 188, and what is out of range is clipped.
+TEST(image, png_is_srgb) {
+    const std::string path = test::temporary("a.png");
+    Image image(3, 1, {"R", "G", "B"});
+    image.values = {0, 0.25f, 0.5f, -1, 7, 0.001f, 0.5f, 0.5f, 0.5f};
+    write_png(path, image, 2, {});
+    const Image found = read_rgb(path);
+    const std::vector<int> expected = {0, 188, 255, 0, 255, 7, 255, 255, 255};
+    for (std::size_t i = 0; i < expected.size(); ++i)
+        EXPECT_EQ(std::lround(found.values[i] * 255), expected[i]) << i;
+}
+
+// An older file is replaced whole or stays as it was, and nothing else is left behind.
+TEST(image, failed_writes_leave_the_old_file) {
+    namespace fs = std::filesystem;
+    const fs::path folder = test::temporary("outputs");
+    fs::create_directories(folder);
+    const std::string path = (folder / "a.exr").string();
+    write_exr(path, {gradient(4, 4)}, {});
+    const std::string before = contents(path);
+    write_exr(path, {gradient(5, 5)}, {});
+    EXPECT_NE(contents(path), before);
+    fs::create_directories(folder / "b.exr");  // in the way of the rename
+    EXPECT_THROW(write_exr((folder / "b.exr").string(), {gradient(4, 4)}, {}), RuntimeError);
+    EXPECT_THROW(write_exr((folder / "none" / "c.exr").string(), {gradient(4, 4)}, {}),
+                 RuntimeError);
+    EXPECT_EQ(std::distance(fs::directory_iterator(folder), {}), 2);
+}
+
+TEST(image, outputs_are_checked_before_the_work) {
+    EXPECT_NO_THROW(check_output(test::temporary("new.exr")));
+    for (const std::string path : {"a.jpg", "a", "nowhere/a.exr"})
+        EXPECT_THROW(check_output(test::temporary(path)), InputError) << path;
+}
+
+TEST(image, auto_exposure_ignores_black) {
+    Image image(10, 10, {"R", "G", "B"});
+    EXPECT_EQ(auto_exposure(image), 1);
+    for (int i = 0; i < 30; ++i) image.values[i] = 5;
+    EXPECT_NEAR(auto_exposure(image) * 5, 0.7, 1e-5);
+}
+
+TEST(image, relmse_by_hand) {
+    Image reference(2, 1, {"R", "G", "B"});
+    reference.values = {1, 1, 1, 3, 3, 3};  // mean luminance 2: scaled to 0.25 and 0.75
+    Image image = reference;
+    EXPECT_EQ(compare_images(image, reference, "a", "b").relmse, 0);
+    image.values[0] = 2;  // one value of six is off by 0.25 when scaled
+    const Difference d = compare_images(image, reference, "a", "b");
+    EXPECT_NEAR(d.relmse, 0.25 * 0.25 / (0.25 * 0.25 + 0.01) / 6, 1e-9);
+    EXPECT_NEAR(d.rmse, std::sqrt(1. / 6), 1e-9);
+    EXPECT_NEAR(d.bias, 1. / 12, 1e-9);
+    image.values[5] = std::numeric_limits<float>::quiet_NaN();
+    EXPECT_EQ(compare_images(image, reference, "a", "b").bad, 1u);
+    EXPECT_THROW((void)compare_images(gradient(3, 1), reference, "a", "b"), InputError);
+}
+
+}  // namespace manylight

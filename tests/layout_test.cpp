@@ -1,0 +1,10 @@
+// SPDX-License-Identifier: MIT
+#include "support.hpp"
+
+namespace manylight {
+
+TEST(layout, device_agrees_on_every_field) {
+    FOR_EACH_DEVICE(device) test::expect_pass(test::verifier("points", device).layout());
+}
+
+}  // namespace manylight

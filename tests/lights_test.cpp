@@ -1,0 +1,239 @@
+// SPDX-License-Identifier: MIT
+// Images whose exact value is known: each expected value is derived in a comment.
+#include <cmath>
+#include <glm/gtc/constants.hpp>
+
+#include "reference/shading.hpp"
+#include "support.hpp"
+
+namespace manylight {
+namespace {
+
+constexpr float pi = glm::pi<float>();
+
+// A Lambert plane y = 0 of albedo 0.6, seen from (0, 3, 0) straight down; the one pixel looks at
+// the origin.
+test::TestScene plane_under(const std::function<void(GltfWriter&)>& add_lights,
+                            unsigned points = 0) {
+    return test::make_scene(
+        [&](GltfWriter& out) {
+            Mesh plane;
+            plane.add_quad({-20, 0, 20}, {40, 0, 0}, {0, 0, -40});
+            out.add_mesh("plane", plane, out.add_diffuse(glm::vec3(0.6f)));
+            add_lights(out);
+            out.add_camera("down", {0, 3, 1e-4f}, {0, 0, 0}, 0.001f, 1);
+        },
+        1, 1, points);
+}
+
+float radiance(const Device& device, const test::TestScene& scene, uint spp = 1) {
+    RenderOptions options;
+    options.sampler = "exhaustive";
+    options.spp = spp;
+    return test::render(device, scene, options).image.values[0];
+}
+
+}  // namespace
+
+// L = albedo / pi * I cos / d^2.
+TEST(lights, point_inverse_square_and_cosine) {
+    FOR_EACH_DEVICE(device)
+    for (const glm::vec3 at : {glm::vec3(0, 1, 0), {0, 2, 0}, {0, 4, 0}, {1, 1, 0}, {2, 1, 1}}) {
+        const float d2 = glm::dot(at, at);
+        const float expected = 0.6f / pi * 7 * (at.y / std::sqrt(d2)) / d2;
+        const test::TestScene scene =
+            plane_under([&](GltfWriter& out) { out.add_point(at, glm::vec3(7)); });
+        EXPECT_NEAR(radiance(device, scene), expected, 2e-5 * expected);
+    }
+}
+
+// Below the plane: nothing.
+TEST(lights, behind_the_surface) {
+    const test::TestScene scene = plane_under([](GltfWriter& out) {
+        out.add_point({0, -1, 0}, glm::vec3(7));
+    });
+    FOR_EACH_DEVICE(device) EXPECT_EQ(radiance(device, scene), 0);
+}
+
+// L = albedo / pi * E cos.
+TEST(lights, directional) {
+    const test::TestScene scene = plane_under([](GltfWriter& out) {
+        out.add_directional({1, -1, 0}, glm::vec3(3));
+    });
+    const float expected = 0.6f / pi * 3 / std::sqrt(2.f);
+    FOR_EACH_DEVICE(device) EXPECT_NEAR(radiance(device, scene), expected, 2e-5 * expected);
+}
+
+// KHR_lights_punctual: attenuation clamp((cos - cos outer) / (cos inner - cos outer))^2, here for a
+// spot at (0, 2, 0) that is turned away from the origin by `angle`.
+TEST(lights, spot_cone) {
+    constexpr float inner = 0.3f;
+    constexpr float outer = 0.8f;
+    FOR_EACH_DEVICE(device)
+    for (const float angle : {0.0f, 0.2f, 0.4f, 0.7f, 0.9f}) {
+        const float cone = std::clamp(
+            (std::cos(angle) - std::cos(outer)) / (std::cos(inner) - std::cos(outer)), 0.f, 1.f);
+        const float expected = 0.6f / pi * 5 / 4 * cone * cone;
+        const test::TestScene scene = plane_under([&](GltfWriter& out) {
+            out.add_spot({0, 2, 0}, {std::sin(angle), -std::cos(angle), 0}, glm::vec3(5), inner,
+                         outer);
+        });
+        EXPECT_NEAR(radiance(device, scene), expected, 2e-5 * expected + 1e-7);
+    }
+}
+
+// A spot's power, lm, against the integral of its intensity over the sphere.
+TEST(lights, spot_power) {
+    const test::TestScene scene = plane_under([](GltfWriter& out) {
+        out.add_spot({0, 2, 0}, {0, -1, 0}, glm::vec3(5), 0.3f, 0.8f);
+    });
+    const Light& light = scene.scene.lights[0];
+    double integral = 0;
+    constexpr int steps = 100000;
+    for (int i = 0; i < steps; ++i) {
+        const double cosine = -1 + 2 * (i + 0.5) / steps;
+        const double cone = std::clamp(cosine * light.edge.x + light.edge.y, 0.0, 1.0);
+        integral += 5 * cone * cone * 2 * M_PI * 2 / steps;
+    }
+    EXPECT_NEAR(light.emission.w, integral, 1e-3 * integral);
+}
+
+// A one-sided square of side a at height h over the point, parallel to the plane. Lambert's formula
+// for a polygon gives E = L / 2 * sum of edge angles * cosines; for this square, by its quarters,
+//   E = 4 * L / 2 * (X / sqrt(1 + X^2) * atan(X / sqrt(1 + X^2)) * 2), X = a / (2 h).
+TEST(lights, area_against_lamberts_formula) {
+    const auto expected = [](double side, double height, double light) {
+        const double x = side / (2 * height);
+        const double r = x / std::sqrt(1 + x * x);
+        return 0.6 / M_PI * 4 * light / 2 * (2 * r * std::atan(r));
+    };
+    FOR_EACH_DEVICE(device)
+    for (const float side : {0.1f, 1.0f, 3.0f}) {
+        const test::TestScene scene = plane_under([&](GltfWriter& out) {
+            Mesh lamp;
+            lamp.add_quad({-side / 2, 3.5f, -side / 2}, {side, 0, 0}, {0, 0, side});
+            out.add_mesh("lamp", lamp, out.add_emitter(glm::vec3(9)));
+        });
+        ASSERT_EQ(scene.scene.lights.size(), 2u);
+        const double value = expected(side, 3.5, 9);
+        EXPECT_NEAR(radiance(device, scene, 4096), value, 0.01 * value) << "side " << side;
+        // Seen from behind it is dark.
+        const test::TestScene back = plane_under([&](GltfWriter& out) {
+            Mesh lamp;
+            lamp.add_quad({-side / 2, 3.5f, -side / 2}, {0, 0, side}, {side, 0, 0});
+            out.add_mesh("lamp", lamp, out.add_emitter(glm::vec3(9)));
+        });
+        EXPECT_EQ(radiance(device, back, 16), 0);
+    }
+}
+
+// As many oriented points as make the square fine: the same light, of the same total power.
+TEST(lights, oriented_points_stand_for_the_area) {
+    const auto add = [](GltfWriter& out) {
+        Mesh lamp;
+        lamp.add_quad({-0.5f, 3.5f, -0.5f}, {1, 0, 0}, {0, 0, 1});
+        out.add_mesh("lamp", lamp, out.add_emitter({9, 6, 3}));
+    };
+    const test::TestScene points = plane_under(add, 400);
+    const test::TestScene area = plane_under(add);
+    ASSERT_EQ(points.scene.lights.size(), 400u);
+    float point_power = 0;
+    float area_power = 0;
+    for (const Light& light : points.scene.lights) {
+        point_power += light.emission.w;
+        EXPECT_NEAR(light.emission.w, points.scene.lights[0].emission.w, 1e-5);  // equal power
+    }
+    for (const Light& light : area.scene.lights) area_power += light.emission.w;
+    EXPECT_NEAR(point_power, area_power, 1e-4 * area_power);
+    FOR_EACH_DEVICE(device)
+    EXPECT_NEAR(radiance(device, points), radiance(device, area, 4096),
+                0.01 * radiance(device, points));
+}
+
+// Emitters of two colours: each point has its emitter's colour, and their number follows power.
+TEST(lights, oriented_points_follow_power) {
+    const test::TestScene scene = plane_under(
+        [](GltfWriter& out) {
+            Mesh small;
+            small.add_quad({-2, 3.5f, 0}, {1, 0, 0}, {0, 0, 1});
+            Mesh large;
+            large.add_quad({1, 3.5f, 0}, {1, 0, 0}, {0, 0, 3});
+            out.add_mesh("small", small, out.add_emitter(glm::vec3(2)));
+            out.add_mesh("large", large, out.add_emitter(glm::vec3(2)));
+        },
+        40);
+    int on_small = 0;
+    for (const Light& light : scene.scene.lights) on_small += light.position.x < 0;
+    EXPECT_EQ(on_small, 10);
+}
+
+// Furnace: a white Lambert plane under directional lights that fill the hemisphere evenly with
+// radiance 1 (illuminance of each: its solid angle) reflects radiance 1.
+TEST(lights, furnace_of_all_visible_lights) {
+    const test::TestScene scene = test::make_scene(
+        [](GltfWriter& out) {
+            Mesh plane;
+            plane.add_quad({-20, 0, 20}, {40, 0, 0}, {0, 0, -40});
+            out.add_mesh("plane", plane, out.add_diffuse(glm::vec3(1)));
+            constexpr int rings = 24;
+            constexpr int spokes = 32;
+            for (int i = 0; i < rings; ++i)
+                for (int j = 0; j < spokes; ++j) {
+                    const float cosine = (static_cast<float>(i) + 0.5f) / rings;
+                    const float sine = std::sqrt(1 - cosine * cosine);
+                    const float angle = 2 * pi * static_cast<float>(j) / spokes;
+                    out.add_directional({sine * std::cos(angle), -cosine, sine * std::sin(angle)},
+                                        glm::vec3(2 * pi / (rings * spokes)));
+                }
+            out.add_camera("down", {0, 3, 1e-4f}, {0, 0, 0}, 0.001f, 1);
+        },
+        1, 1);
+    FOR_EACH_DEVICE(device) EXPECT_NEAR(radiance(device, scene), 1, 1e-4);
+}
+
+// The range of KHR_lights_punctual: I clamp(1 - (d / range)^4) / d^2. The writer has no ranges, so
+// the light is given one here.
+TEST(lights, range) {
+    test::TestScene scene = plane_under([](GltfWriter& out) {
+        out.add_point({0, 2, 0}, glm::vec3(7));
+    });
+    FOR_EACH_DEVICE(device)
+    for (const float range : {1.5f, 2.5f, 10.f}) {
+        scene.scene.lights[0].axis.w = range;
+        const float window = std::max(1 - std::pow(2 / range, 4.f), 0.f);
+        const float expected = 0.6f / pi * 7 / 4 * window;
+        EXPECT_NEAR(radiance(device, scene), expected, 2e-5 * expected + 1e-7);
+    }
+}
+
+// The reference's BRDF is reciprocal, and metal reflects no more than it receives: white metal
+// loses only what scatters more than once. (glTF's mix of diffuse and specular takes Fresnel's term
+// of each direction alone and may reflect up to 1.2 at grazing angles.)
+TEST(lights, reference_brdf_is_physical) {
+    const glm::dvec3 n(0, 0, 1);
+    for (const float alpha : {0.05f, 0.3f, 1.0f})
+        for (const float metallic : {0.f, 0.5f, 1.f})
+            for (const double angle : {0.1, 0.8, 1.3}) {
+                const Material m{float4(1, 1, 1, metallic), float4(0), alpha, 1, 0, 0};
+                const glm::dvec3 wo(std::sin(angle), 0, std::cos(angle));
+                double sum = 0;
+                constexpr int steps = 400;
+                for (int i = 0; i < steps; ++i)
+                    for (int j = 0; j < steps; ++j) {
+                        const double cosine = (i + 0.5) / steps;
+                        const double sine = std::sqrt(1 - cosine * cosine);
+                        const double phi = 2 * M_PI * (j + 0.5) / steps;
+                        const glm::dvec3 wi(sine * std::cos(phi), sine * std::sin(phi), cosine);
+                        const glm::dvec3 f = reference::brdf(m, n, wi, wo);
+                        sum += f.x * cosine * 2 * M_PI / (steps * steps);
+                        if (i % 100 == 7 && j % 100 == 7) {
+                            EXPECT_NEAR(f.x, reference::brdf(m, n, wo, wi).x, 1e-9 * f.x + 1e-12);
+                        }
+                    }
+                EXPECT_LT(sum, metallic == 1 ? 1.001 : 1.2)
+                    << alpha << " " << metallic << " " << angle;
+                EXPECT_GT(sum, 0.3) << alpha << " " << metallic << " " << angle;
+            }
+}
+
+}  // namespace manylight

@@ -1,0 +1,353 @@
+# SPDX-License-Identifier: MIT
+"""Makes malformed glTF files and expects each to be refused with one clear message.
+
+usage: malformed.py MANYLIGHT [FOLDER]    FOLDER keeps the files
+
+Each case changes one thing in a valid file and names words that the message must hold: the object
+and the value. A refusal is one line on standard error, "error: FILE: ...", and exit code 1 to 3, in
+time; run with a program built under sanitizers, whose reports fail the case.
+"""
+import base64
+import concurrent.futures
+import json
+import os
+import pathlib
+import struct
+import subprocess
+import sys
+import tempfile
+
+POSITIONS = struct.pack("<12f", 0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0)
+INDICES = struct.pack("<6H", 0, 1, 2, 2, 1, 3)
+DATA = POSITIONS + INDICES
+
+
+def valid():
+    return {
+        "asset": {"version": "2.0"},
+        "extensionsUsed": ["KHR_lights_punctual"],
+        "extensions": {"KHR_lights_punctual": {"lights": [
+            {"type": "point", "color": [1, 1, 1], "intensity": 5, "range": 10},
+            {"type": "spot", "spot": {"innerConeAngle": 0.1, "outerConeAngle": 0.5}},
+        ]}},
+        "scene": 0,
+        "scenes": [{"nodes": [0, 1, 2]}],
+        "nodes": [
+            {"mesh": 0, "children": [3]},
+            {"translation": [0, 0, 3], "extensions": {"KHR_lights_punctual": {"light": 0}}},
+            {"camera": 0, "translation": [0, 0, 4]},
+            {"rotation": [0, 0, 0, 1], "scale": [1, 1, 1]},
+        ],
+        "cameras": [
+            {"type": "perspective", "perspective": {"yfov": 1, "aspectRatio": 1, "znear": 0.1}},
+            {"type": "orthographic",
+             "orthographic": {"xmag": 1, "ymag": 1, "znear": 0, "zfar": 9}},
+        ],
+        "materials": [{
+            "pbrMetallicRoughness": {"baseColorFactor": [1, 1, 1, 1], "metallicFactor": 0,
+                                     "roughnessFactor": 1, "baseColorTexture": {"index": 0}},
+            "emissiveFactor": [0, 0, 0], "doubleSided": True, "alphaMode": "OPAQUE",
+            "extensions": {"KHR_materials_emissive_strength": {"emissiveStrength": 1},
+                           "KHR_materials_specular": {"specularFactor": 0}},
+        }],
+        "textures": [{"source": 0, "sampler": 0}],
+        "samplers": [{}],
+        "images": [{"uri": "texture.png"}],
+        "skins": [{"joints": [3]}],
+        "meshes": [{"primitives": [{"attributes": {"POSITION": 0, "NORMAL": 0}, "indices": 1,
+                                    "material": 0, "mode": 4}]}],
+        "accessors": [
+            {"bufferView": 0, "byteOffset": 0, "componentType": 5126, "count": 4, "type": "VEC3",
+             "min": [0, 0, 0], "max": [1, 1, 0]},
+            {"bufferView": 1, "componentType": 5123, "count": 6, "type": "SCALAR"},
+        ],
+        "bufferViews": [{"buffer": 0, "byteOffset": 0, "byteLength": 48, "byteStride": 12},
+                        {"buffer": 0, "byteOffset": 48, "byteLength": 12}],
+        "buffers": [{"byteLength": 60,
+                     "uri": "data:application/octet-stream;base64,"
+                            + base64.b64encode(DATA).decode()}],
+    }
+
+
+def glb(document=None, chunks=None, version=2, length=None, binary=DATA):
+    if chunks is None:
+        document = document or valid()
+        document["buffers"] = [{"byteLength": len(binary)}]
+        text = json.dumps(document).encode()
+        text += b" " * (-len(text) % 4)
+        chunks = [(0x4E4F534A, text), (0x004E4942, binary + b"\0" * (-len(binary) % 4))]
+    body = b"".join(struct.pack("<II", len(data), kind) + data for kind, data in chunks)
+    total = 12 + len(body) if length is None else length
+    return b"glTF" + struct.pack("<II", version, total) + body
+
+
+def put(path, value):
+    """A change that puts a value at a path of keys; `...` as a value deletes."""
+    def change(document):
+        place = document
+        for key in path[:-1]:
+            place = place[key]
+        if value is ...:
+            del place[path[-1]]
+        else:
+            place[path[-1]] = value
+    return change
+
+
+def patched(offset, data):
+    """The valid file with other bytes in its buffer."""
+    changed = DATA[:offset] + data + DATA[offset + len(data):]
+    return put(["buffers", 0, "uri"],
+               "data:application/octet-stream;base64," + base64.b64encode(changed).decode())
+
+
+POSITION, INDEX = ["accessors", 0], ["accessors", 1]
+VIEW, BUFFER = ["bufferViews", 0], ["buffers", 0]
+MATERIAL, PBR = ["materials", 0], ["materials", 0, "pbrMetallicRoughness"]
+PRIMITIVE = ["meshes", 0, "primitives", 0]
+LIGHT = ["extensions", "KHR_lights_punctual", "lights", 0]
+SPOT = ["extensions", "KHR_lights_punctual", "lights", 1, "spot"]
+LENS = ["cameras", 0, "perspective"]
+ORTHO = ["cameras", 1, "orthographic"]
+NAN = struct.pack("<f", float("nan"))
+INF = struct.pack("<f", float("inf"))
+
+# name: (change, words that the message must hold)
+CHANGES = {
+    "asset missing": (put(["asset"], ...), ["'asset' is missing"]),
+    "asset no object": (put(["asset"], 3), ["asset", "3", "not an object"]),
+    "version missing": (put(["asset", "version"], ...), ["asset", "'version'"]),
+    "version 1": (put(["asset", "version"], "1.0"), ["asset.version", "1.0"]),
+    "version a number": (put(["asset", "version"], 2), ["asset.version", "not a string"]),
+    "minimum version": (put(["asset", "minVersion"], "2.9"), ["asset.minVersion", "2.9"]),
+    "unknown required extension": (put(["extensionsRequired"], ["KHR_draco_mesh_compression"]),
+                                   ["extensionsRequired[0]", "KHR_draco_mesh_compression"]),
+    "required extension no string": (put(["extensionsRequired"], [7]), ["extensionsRequired[0]"]),
+    "extensions used no array": (put(["extensionsUsed"], {}), ["extensionsUsed", "not an array"]),
+    "nodes no array": (put(["nodes"], {"0": {}}), ["nodes", "not an array"]),
+    "node no object": (put(["nodes", 0], "mesh"), ["nodes[0]", "not an object"]),
+    "scene beyond": (put(["scene"], 1), ["scene", "no scene 1"]),
+    "scene negative": (put(["scene"], -1), ["scene", "-1"]),
+    "scene a fraction": (put(["scene"], 0.5), ["scene", "0.5"]),
+    "scene node beyond": (put(["scenes", 0, "nodes"], [9]), ["scenes[0].nodes[0]", "9"]),
+    "scene node twice": (put(["scenes", 0, "nodes"], [0, 0]), ["scenes[0].nodes[1]", "twice"]),
+    "scene node no root": (put(["scenes", 0, "nodes"], [0, 3]), ["scenes[0].nodes[1]", "no root"]),
+    "no scene": (put(["scenes"], ...), ["scene"]),
+    "emitter points": (put(["scenes", 0, "extras"], {"emitter_points": -4}), ["emitter_points", "-4"]),
+    "emitter points huge": (put(["scenes", 0, "extras"], {"emitter_points": 10**12}),
+                            ["emitter_points", str(10**12)]),
+    "node mesh beyond": (put(["nodes", 0, "mesh"], 5), ["nodes[0].mesh", "5"]),
+    "node mesh a string": (put(["nodes", 0, "mesh"], "0"), ["nodes[0].mesh", "\"0\""]),
+    "node camera beyond": (put(["nodes", 2, "camera"], 2), ["nodes[2].camera", "2"]),
+    "node skin beyond": (put(["nodes", 0, "skin"], 1), ["nodes[0].skin", "1"]),
+    "node child beyond": (put(["nodes", 0, "children"], [4]), ["nodes[0].children[0]", "4"]),
+    "node its own child": (put(["nodes", 3, "children"], [3]), ["node 3"]),
+    "node cycle": (lambda d: (d["nodes"].extend([{"children": [5]}, {"children": [4]}])),
+                   ["its own ancestor"]),
+    "node with two parents": (put(["nodes", 1, "children"], [3]), ["node 3", "already"]),
+    "rotation of three": (put(["nodes", 3, "rotation"], [0, 0, 1]), ["nodes[3].rotation", "3"]),
+    "rotation of zeros": (put(["nodes", 3, "rotation"], [0, 0, 0, 0]), ["nodes[3].rotation"]),
+    "rotation no unit": (put(["nodes", 3, "rotation"], [1, 1, 1, 1]), ["nodes[3].rotation", "unit"]),
+    "scale of two": (put(["nodes", 3, "scale"], [1, 1]), ["nodes[3].scale", "2"]),
+    "translation a string": (put(["nodes", 1, "translation"], "far"), ["nodes[1].translation", "far"]),
+    "translation of words": (put(["nodes", 1, "translation"], [0, "1", 0]),
+                             ["nodes[1].translation[1]", "not a number"]),
+    "translation huge": (put(["nodes", 1, "translation"], [0, 1e300, 0]), ["nodes[1].translation[1]", "1e+300"]),
+    "matrix of 15": (put(["nodes", 3], {"matrix": [1] * 15}), ["nodes[3].matrix", "15"]),
+    "matrix and scale": (put(["nodes", 3, "matrix"], [1, 0, 0, 0] * 4), ["nodes[3]", "both"]),
+    "transforms overflow": (lambda d: (d["nodes"][0].update(scale=[1e30, 1, 1]),
+                                       d["nodes"][3].update(scale=[1e30, 1, 1])), ["nodes[3]", "range"]),
+    "vertices overflow": (put(["nodes", 0, "scale"], [3e38, 3e38, 3e38]), ["meshes[0].primitives[0]"]),
+    "light beyond": (put(["nodes", 1, "extensions", "KHR_lights_punctual", "light"], 2),
+                     ["nodes[1]", "light", "2"]),
+    "light missing": (put(["nodes", 1, "extensions", "KHR_lights_punctual"], {}), ["'light' is missing"]),
+    "light type": (put(LIGHT + ["type"], "area"), ["lights[0].type", "area"]),
+    "light type missing": (put(LIGHT + ["type"], ...), ["lights[0]", "'type'"]),
+    "light color of two": (put(LIGHT + ["color"], [1, 1]), ["lights[0].color"]),
+    "light color negative": (put(LIGHT + ["color"], [1, -1, 1]), ["lights[0].color[1]", "-1"]),
+    "light intensity negative": (put(LIGHT + ["intensity"], -5), ["lights[0].intensity", "-5"]),
+    "light intensity a string": (put(LIGHT + ["intensity"], "bright"), ["lights[0].intensity", "bright"]),
+    "light range 0": (put(LIGHT + ["range"], 0), ["lights[0].range", "0"]),
+    "lights no array": (put(["extensions", "KHR_lights_punctual", "lights"], {}), ["lights", "array"]),
+    "spot missing": (put(SPOT[:-1] + ["spot"], ...), ["lights[1]", "'spot'"]),
+    "spot wide": (put(SPOT + ["outerConeAngle"], 2), ["outerConeAngle", "2"]),
+    "spot inner beyond outer": (put(SPOT + ["innerConeAngle"], 0.6), ["innerConeAngle", "0.6"]),
+    "spot inner negative": (put(SPOT + ["innerConeAngle"], -0.1), ["innerConeAngle", "-0.1"]),
+    "camera type": (put(["cameras", 0, "type"], "fisheye"), ["cameras[0].type", "fisheye"]),
+    "camera without lens": (put(["cameras", 0, "perspective"], ...), ["cameras[0]", "perspective"]),
+    "camera yfov 0": (put(LENS + ["yfov"], 0), ["yfov", "0"]),
+    "camera yfov 4": (put(LENS + ["yfov"], 4), ["yfov", "4"]),
+    "camera aspect negative": (put(LENS + ["aspectRatio"], -1), ["aspectRatio", "-1"]),
+    "camera znear missing": (put(LENS + ["znear"], ...), ["znear"]),
+    "camera xmag 0": (put(ORTHO + ["xmag"], 0), ["xmag", "0"]),
+    "camera zfar a string": (put(ORTHO + ["zfar"], "9"), ["zfar", "9"]),
+    "base color of three": (put(PBR + ["baseColorFactor"], [1, 1, 1]), ["baseColorFactor", "3"]),
+    "base color above 1": (put(PBR + ["baseColorFactor"], [1, 2, 1, 1]), ["baseColorFactor[1]", "2"]),
+    "metallic above 1": (put(PBR + ["metallicFactor"], 1.5), ["metallicFactor", "1.5"]),
+    "roughness negative": (put(PBR + ["roughnessFactor"], -0.1), ["roughnessFactor", "-0.1"]),
+    "emissive above 1": (put(MATERIAL + ["emissiveFactor"], [0, 0, 3]), ["emissiveFactor[2]", "3"]),
+    "emissive strength negative": (put(MATERIAL + ["extensions", "KHR_materials_emissive_strength",
+                                                   "emissiveStrength"], -1), ["emissiveStrength", "-1"]),
+    "specular above 1": (put(MATERIAL + ["extensions", "KHR_materials_specular", "specularFactor"], 2),
+                         ["specularFactor", "2"]),
+    "double sided a number": (put(MATERIAL + ["doubleSided"], 1), ["doubleSided", "1"]),
+    "alpha mode": (put(MATERIAL + ["alphaMode"], "GLASS"), ["alphaMode", "GLASS"]),
+    "texture beyond": (put(PBR + ["baseColorTexture", "index"], 1), ["baseColorTexture.index", "1"]),
+    "texture source beyond": (put(["textures", 0, "source"], 7), ["textures[0].source", "7"]),
+    "image outside": (put(["images", 0, "uri"], "../../secret.png"), ["images[0].uri", "outside"]),
+    "meshes of numbers": (put(["meshes"], [1]), ["meshes[0]", "not an object"]),
+    "mesh without primitives": (put(["meshes", 0, "primitives"], []), ["meshes[0].primitives"]),
+    "primitive material beyond": (put(PRIMITIVE + ["material"], 1), ["primitives[0].material", "1"]),
+    "primitive mode": (put(PRIMITIVE + ["mode"], 9), ["primitives[0].mode", "9"]),
+    "primitive indices beyond": (put(PRIMITIVE + ["indices"], 2), ["primitives[0].indices", "2"]),
+    "attributes missing": (put(PRIMITIVE + ["attributes"], ...), ["attributes"]),
+    "attribute beyond": (put(PRIMITIVE + ["attributes", "POSITION"], 4), ["POSITION", "4"]),
+    "attribute negative": (put(PRIMITIVE + ["attributes", "POSITION"], -1), ["POSITION", "-1"]),
+    "positions of scalars": (put(PRIMITIVE + ["attributes"], {"POSITION": 1}), ["POSITION", "VEC3"]),
+    "indices of vectors": (put(PRIMITIVE + ["indices"], 0), ["indices", "SCALAR"]),
+    "indices of floats": (lambda d: (d["accessors"].append({"bufferView": 0, "componentType": 5126,
+                                                            "count": 3, "type": "SCALAR"}),
+                                     d["meshes"][0]["primitives"][0].update(indices=2)),
+                          ["indices", "unsigned"]),
+    "corners no triangles": (put(INDEX + ["count"], 5), ["5 corners"]),
+    "index beyond the vertices": (patched(48 + 4, struct.pack("<H", 4)), ["element 2", "4"]),
+    "normals too few": (lambda d: (d["accessors"].append(dict(d["accessors"][0], count=3)),
+                                   d["meshes"][0]["primitives"][0]["attributes"].update(NORMAL=2)),
+                        ["NORMAL", "3 normals for 4"]),
+    "position not a number": (patched(4, NAN), ["POSITION", "element 0"]),
+    "position infinite": (patched(24, INF), ["POSITION", "element 2"]),
+    "accessor type": (put(POSITION + ["type"], "VEC5"), ["accessors[0].type", "VEC5"]),
+    "accessor component type": (put(POSITION + ["componentType"], 5127), ["componentType", "5127"]),
+    "accessor count missing": (put(POSITION + ["count"], ...), ["accessors[0]", "'count'"]),
+    "accessor count 0": (put(POSITION + ["count"], 0), ["accessors[0].count"]),
+    "accessor count negative": (put(POSITION + ["count"], -3), ["accessors[0].count", "-3"]),
+    "accessor count 5": (put(POSITION + ["count"], 5), ["accessors[0]", "count 5"]),
+    "accessor count 2^31": (put(POSITION + ["count"], 2**31), ["accessors[0]", str(2**31)]),
+    "accessor count 2^62": (put(POSITION + ["count"], 2**62), ["accessors[0]", str(2**62)]),
+    "accessor count 2^64": (put(POSITION + ["count"], 2**64), ["accessors[0].count"]),
+    "accessor count 1e300": (put(POSITION + ["count"], 1e300), ["accessors[0].count"]),
+    "accessor offset beyond": (put(POSITION + ["byteOffset"], 48), ["accessors[0]", "48"]),
+    "accessor offset 2^63": (put(POSITION + ["byteOffset"], 2**63), ["accessors[0]", str(2**63)]),
+    "accessor view beyond": (put(POSITION + ["bufferView"], 2), ["accessors[0].bufferView", "2"]),
+    "accessor without view": (put(POSITION + ["bufferView"], ...), ["POSITION", "no bufferView"]),
+    "accessor sparse": (put(POSITION + ["sparse"], {
+        "count": 1, "indices": {"bufferView": 1, "componentType": 5123}, "values": {"bufferView": 0}}),
+        ["POSITION", "sparse"]),
+    "accessor min of two": (put(POSITION + ["min"], [0, 0]), ["accessors[0].min", "2"]),
+    "view buffer beyond": (put(VIEW + ["buffer"], 1), ["bufferViews[0].buffer", "1"]),
+    "view length 0": (put(VIEW + ["byteLength"], 0), ["bufferViews[0].byteLength"]),
+    "view length beyond": (put(VIEW + ["byteLength"], 61), ["bufferViews[0]", "61"]),
+    "view length 2^64 - 1": (put(VIEW + ["byteLength"], 2**64 - 1), ["bufferViews[0]", str(2**64 - 1)]),
+    "view offset overflows": (put(VIEW + ["byteOffset"], 2**64 - 8), ["bufferViews[0]", str(2**64 - 8)]),
+    "view stride 2": (put(VIEW + ["byteStride"], 2), ["byteStride", "2"]),
+    "view stride 8": (put(VIEW + ["byteStride"], 8), ["byteStride", "8"]),
+    "view stride 13": (put(VIEW + ["byteStride"], 13), ["byteStride", "13"]),
+    "view stride 256": (put(VIEW + ["byteStride"], 256), ["byteStride", "256"]),
+    "buffer length missing": (put(BUFFER + ["byteLength"], ...), ["buffers[0]", "'byteLength'"]),
+    "buffer shorter than said": (put(BUFFER + ["byteLength"], 1000), ["uffer"]),
+    "buffer 2^62 bytes": (put(BUFFER + ["byteLength"], 2**62), ["uffer"]),
+    "buffer without uri": (put(BUFFER + ["uri"], ...), ["buffers[0]", "'uri'"]),
+    "buffer uri absolute": (put(BUFFER + ["uri"], "/etc/passwd"), ["buffers[0].uri", "outside"]),
+    "buffer uri upwards": (put(BUFFER + ["uri"], "../data.bin"), ["buffers[0].uri", "outside"]),
+    "buffer uri upwards, encoded": (put(BUFFER + ["uri"], "%2e%2e/data.bin"), ["buffers[0].uri", "outside"]),
+    "buffer uri by network": (put(BUFFER + ["uri"], "http://localhost/data.bin"), ["buffers[0].uri"]),
+    "buffer uri of no file": (put(BUFFER + ["uri"], "nowhere.bin"), ["buffers[0].uri", "nowhere.bin"]),
+    "buffer uri the folder": (put(BUFFER + ["uri"], "."), ["buffers[0].uri"]),
+    "buffer uri empty": (put(BUFFER + ["uri"], ""), ["buffers[0].uri"]),
+    "buffer uri a number": (put(BUFFER + ["uri"], 5), ["buffers[0].uri", "5"]),
+    "buffer data not base64": (put(BUFFER + ["uri"], "data:application/octet-stream,abc"),
+                               ["buffers[0].uri", "base64"]),
+    "skin joint beyond": (put(["skins", 0, "joints"], [8]), ["skins[0].joints[0]", "8"]),
+}
+
+TEXT = json.dumps(valid()).encode()
+GLB_TEXT = json.dumps(valid()).encode() + b" " * (-len(TEXT) % 4)
+
+# name: (the file's bytes, words)
+FILES = {
+    "empty.gltf": (b"", ["JSON"]),
+    "cut off.gltf": (TEXT[:200], ["JSON"]),
+    "no JSON.gltf": (b"solid cube\nfacet normal 0 0 1\n", ["JSON"]),
+    "an array.gltf": (b"[1, 2]", ["not an object"]),
+    "a number.gltf": (b"17", ["not an object"]),
+    "no UTF-8.gltf": (TEXT.replace(b"texture.png", b"t\xff\xfe.png"), ["JSON"]),
+    "brackets.gltf": (b"[" * 20000 + b"]" * 20000, ["nested deeper"]),
+    "braces.gltf": (b'{"a":' * 20000 + b"1" + b"}" * 20000, ["nested deeper"]),
+    "brackets in extras.gltf": (TEXT[:-1] + b', "extras": ' + b"[" * 300 + b"]" * 300 + b"}",
+                                ["nested deeper"]),
+    "number 1e999.gltf": (TEXT.replace(b'"intensity": 5', b'"intensity": 1e999'), ["JSON"]),
+    "number NaN.gltf": (TEXT.replace(b'"intensity": 5', b'"intensity": NaN'), ["JSON"]),
+    "header only.glb": (b"glTF", ["glb header"]),
+    "header cut off.glb": (glb()[:16], ["glb header"]),
+    "version 1.glb": (glb(version=1), ["glb header", "version 1"]),
+    "length long.glb": (glb(length=10**6), ["glb header", "1000000"]),
+    "length short.glb": (glb(length=40), ["glb header", "40"]),
+    "first chunk BIN.glb": (glb(chunks=[(0x004E4942, DATA)]), ["chunk 0"]),
+    "second chunk JSON.glb": (glb(chunks=[(0x4E4F534A, GLB_TEXT), (0x4E4F534A, GLB_TEXT)]), ["chunk 1"]),
+    "chunk beyond.glb": (b"glTF" + struct.pack("<IIII", 2, 24, 4000, 0x4E4F534A) + b"{}  ", ["chunk 0", "4000"]),
+    "chunk header cut off.glb": (b"glTF" + struct.pack("<IIII", 2, 28, 4, 0x4E4F534A) + b"{}  " + b"\0\0\0\0",
+                                 ["chunk 1"]),
+    "chunk no multiple of 4.glb": (b"glTF" + struct.pack("<IIII", 2, 22, 2, 0x4E4F534A) + b"{}",
+                                   ["chunk 0", "multiple"]),
+    "without binary.glb": (glb(chunks=[(0x4E4F534A, json.dumps(
+        dict(valid(), buffers=[{"byteLength": 60}])).encode() + b"   "[:(-len(json.dumps(
+            dict(valid(), buffers=[{"byteLength": 60}]))) % 4)])]), ["uffer"]),
+    "binary too short.glb": (glb(dict(valid())).replace(b'"byteLength": 60}]', b'"byteLength": 90}]'),
+                             ["byteLength", "90"]),
+}
+
+
+def refused(program, path, words):
+    """None if the file is refused as it should be, otherwise what is wrong."""
+    image = path.parent / (path.name + ".png")
+    command = [program, "render", str(path), "--quiet", "-o", str(image)]
+    try:
+        run = subprocess.run(command, capture_output=True, text=True, timeout=20, errors="replace")
+    except subprocess.TimeoutExpired:
+        return "it hangs"
+    if run.returncode not in (1, 2, 3):
+        return f"exit code {run.returncode}: {run.stderr[-2000:]}"
+    lines = run.stderr.splitlines()
+    if len(lines) != 1 or not lines[0].startswith(f"error: {path}: "):
+        return f"no single line that names the file: {run.stderr[-2000:]}"
+    missing = [word for word in words if word not in lines[0].replace(f"error: {path}: ", "")]
+    if missing:
+        return f"the message lacks {missing}: {lines[0]}"
+    if image.exists():
+        return "an image was made"
+    return None
+
+
+def main():
+    program = sys.argv[1]
+    folder = pathlib.Path(sys.argv[2] if len(sys.argv) > 2 else tempfile.mkdtemp())
+    inside = folder / "scenes"  # so that ../data.bin exists and is still refused
+    inside.mkdir(parents=True, exist_ok=True)
+    (folder / "data.bin").write_bytes(DATA)
+    cases = {}
+    for name, (change, words) in CHANGES.items():
+        document = valid()
+        change(document)
+        cases[name + ".gltf"] = (json.dumps(document).encode(), words)
+    cases.update(FILES)
+    good = inside / "valid.gltf"
+    good.write_text(json.dumps(valid()))
+    image = inside / "valid.png"
+    subprocess.run([program, "render", str(good), "--quiet", "--height", "8", "-o", str(image)],
+                   check=True, env=dict(os.environ, ASAN_OPTIONS="detect_leaks=0"))
+    for name, (data, _) in cases.items():
+        (inside / name).write_bytes(data)
+    # A file that does not exist, and a folder, are refused alike.
+    tries = [(inside / name, words) for name, (_, words) in cases.items()]
+    tries += [(inside / "none.glb", []), (inside, [])]
+    with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
+        results = list(pool.map(lambda case: refused(program, *case), tries))
+    for (path, _), wrong in zip(tries, results):
+        if wrong:
+            print(f"{path.name}: {wrong}")
+    failed = sum(wrong is not None for wrong in results)
+    print(f"{len(tries) - failed} passed, {failed} failed")
+    sys.exit(failed != 0)
+
+
+main()

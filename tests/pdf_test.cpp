@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: MIT
+#include <bit>
+
+#include "support.hpp"
+
+namespace manylight {
+namespace {
+
+// The CDF of one row of contributions and powers.
+std::vector<uint> cdf_of(Device device, const std::vector<float>& row,
+                         const std::vector<float>& powers, Mixture mixture) {
+    Scene scene;
+    RowSum total{};
+    for (std::size_t y = 0; y < row.size(); ++y) {
+        scene.lights.push_back(
+            {float4(0, 0, 0, LIGHT_POINT), float4(0), float4(0), float4(1, 1, 1, powers[y])});
+        total.visible += std::max(row[y], 0.f);
+        total.unshadowed += std::abs(row[y]);
+        mixture.total_power += powers[y];
+    }
+    const WideBvh bvh = build_wide_bvh(scene, 4, 4, 1);
+    const DeviceScene uploaded = upload_scene(device, scene, bvh, Camera{});
+    const auto lights = static_cast<uint>(row.size());
+    Matrix matrix(device, 1, lights);
+    std::vector<uint> words;
+    for (const float value : row) words.push_back(std::bit_cast<uint>(value));
+    matrix.values.upload(words);
+    matrix.totals.upload(std::vector<RowSum>{total});
+    PdfStage(device, uploaded).normalise(1, mixture, matrix);
+    return matrix.values.download();
+}
+
+}  // namespace
+
+TEST(pdf, agrees_with_the_reference) {
+    FOR_EACH_DEVICE(device)
+    for (const std::string& scene : test::scene_names())
+        for (const Sampler& sampler : all_samplers()) {
+            if (sampler.table == Table::none) continue;
+            SCOPED_TRACE(scene);
+            test::expect_pass(test::verifier(scene, device).pdf(sampler));
+        }
+}
+
+TEST(pdf, paper_weights_visible_lights_only) {
+    FOR_EACH_DEVICE(device) {
+        const std::vector<uint> cdf = cdf_of(device, {1, -5, 3, 0}, {1, 1, 1, 1}, {1, 0, 0, 0});
+        const double unit = CDF_SCALE;
+        EXPECT_NEAR(cdf[0] / unit, 0.25, 1e-6);
+        EXPECT_EQ(cdf[1], cdf[0]);
+        EXPECT_NEAR(cdf[2] / unit, 1, 1e-6);
+        EXPECT_EQ(cdf[3], cdf[2]);
+    }
+}
+
+// 0.4 C + 0.5 C without visibility + 0.1 power; where nothing is visible the rest is scaled up.
+TEST(pdf, mixture_by_hand) {
+    FOR_EACH_DEVICE(device) {
+        const double unit = CDF_SCALE;
+        std::vector<uint> cdf = cdf_of(device, {1, -3}, {6, 2}, {0.4f, 0.5f, 0.1f, 0});
+        EXPECT_NEAR(cdf[0] / unit, 0.4 * 1 + 0.5 * 0.25 + 0.1 * 0.75, 1e-6);
+        EXPECT_NEAR(cdf[1] / unit, 1, 1e-6);
+        cdf = cdf_of(device, {-1, -3}, {6, 2}, {0.4f, 0.5f, 0.1f, 0});
+        EXPECT_NEAR(cdf[0] / unit, (0.5 * 0.25 + 0.1 * 0.75) / 0.6, 1e-6);
+    }
+}
+
+TEST(pdf, row_without_chances_is_zero) {
+    FOR_EACH_DEVICE(device)
+    for (const uint sum : cdf_of(device, {-1, 0, -2}, {1, 1, 1}, {1, 0, 0, 0})) EXPECT_EQ(sum, 0u);
+}
+
+// A light that is 1e-12 of the whole keeps a chance, and sums stay exact over many chunks.
+TEST(pdf, tiny_weights_keep_a_chance) {
+    std::vector<float> row(5000, 1e-9f);
+    row[4000] = 1000;
+    const std::vector<float> powers(row.size(), 1);
+    FOR_EACH_DEVICE(device) {
+        const std::vector<uint> cdf = cdf_of(device, row, powers, {1, 0, 0, 0});
+        uint before = 0;
+        for (const uint sum : cdf) {
+            EXPECT_GT(sum, before);
+            before = sum;
+        }
+        EXPECT_NEAR(cdf.back() / double{CDF_SCALE}, 1, 1e-5);
+    }
+}
+
+}  // namespace manylight

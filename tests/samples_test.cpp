@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: MIT
+#include "stages/samples.hpp"
+
+#include <cmath>
+
+#include "reference/contributions.hpp"
+#include "reference/pdf.hpp"
+#include "reference/tiles.hpp"
+#include "support.hpp"
+
+namespace manylight {
+namespace {
+
+constexpr unsigned size = 16;
+constexpr uint draws = 1500;
+
+// A colour of luminance about 1 whose red and green tell i.
+glm::vec3 hue(int i) {
+    return {0.3f + 0.4f * static_cast<float>(i % 4), 0.6f + 0.4f * static_cast<float>(i / 4), 1};
+}
+
+// A plane under twelve lights of different hues, each of which every pixel sees: the hue of one
+// light sample's estimate tells which light was drawn.
+const test::TestScene& open_scene() {
+    static const test::TestScene scene = test::make_scene(
+        [](GltfWriter& out) {
+            Mesh plane;
+            plane.add_quad({-5, 0, 5}, {10, 0, 0}, {0, 0, -10});
+            out.add_mesh("plane", plane, out.add_diffuse(glm::vec3(0.5f)));
+            for (int i = 0; i < 12; ++i)
+                out.add_point(
+                    {0.7f * static_cast<float>(i) - 4, 1 + 0.13f * static_cast<float>(i % 5), 0},
+                    (1 + 0.7f * static_cast<float>(i * i % 7)) * hue(i));
+            out.add_camera("front", {0, 3, 4}, {0, 0, 0}, 0.8f, 1);
+        },
+        size, size);
+    return scene;
+}
+
+struct Drawn {
+    std::vector<Surface> surfaces;
+    std::vector<std::vector<float4>> values;  // [draw][item]
+    std::vector<double> expected;             // [item * lights + light] probability
+};
+
+// Draws one light sample per pixel, many times, with the probabilities that the reference gives.
+Drawn draw_often(Device device, const Sampler& sampler) {
+    const test::TestScene& s = open_scene();
+    const auto lights = static_cast<uint>(s.scene.lights.size());
+    const Tiles tiles = all_tiles(size, size, 16);
+    const WideBvh bvh = build_wide_bvh(s.scene, 8, 8, 10);
+    const DeviceScene uploaded = upload_scene(device, s.scene, bvh, s.camera);
+    Drawn out;
+    Buffer<Surface> surfaces = device.allocate<Surface>(item_count(tiles));
+    GBufferStage(device, uploaded).trace(tiles, {}, surfaces);
+    out.surfaces = surfaces.download();
+
+    ClusterOptions options;
+    options.tile_size = 16;
+    Clustering clustering(device, uploaded, options, tiles.count);
+    clustering.build(tiles, surfaces, [](std::size_t) {});
+    Mixture mixture{sampler.shares.visible, sampler.shares.unshadowed, sampler.shares.power, 0};
+    for (const Light& light : s.scene.lights) mixture.total_power += light.emission.w;
+    const std::vector<uint> rows = clustering.item_rows();
+    const std::vector<uint> words = clustering.matrix().values.download();
+    const std::vector<RowSum> totals = clustering.totals();
+    for (std::size_t item = 0; item < item_count(tiles); ++item) {
+        std::vector<float> row(lights, 0.f);
+        RowSum total{};
+        if (sampler.table == Table::clusters) {
+            for (uint y = 0; y < lights; ++y)
+                row[y] = std::bit_cast<float>(words[rows[item] * lights + y]);
+            total = totals[rows[item]];
+        }
+        std::vector<double> p(lights, 1.0 / lights);
+        if (sampler.table != Table::none)
+            p = reference::probabilities(row, total, s.scene.lights, mixture);
+        out.expected.insert(out.expected.end(), p.begin(), p.end());
+    }
+    clustering.normalise(mixture);
+    Matrix power(device, 1, lights);
+    power.values.clear();
+    power.totals.clear();
+    PdfStage(device, uploaded).normalise(1, mixture, power);
+    Arguments tables = clustering.tables();
+    tables.set("power_cdf", power.values);
+    SampleStage stage(device, uploaded, sampler.kernel_file);
+    Buffer<float4> estimates = device.allocate<float4>(item_count(tiles));
+    for (uint i = 0; i < draws; ++i) {
+        stage.draw(tiles, {i, 11, false}, 1, surfaces, tables, estimates, [](std::size_t) {});
+        out.values.push_back(estimates.download());
+    }
+    return out;
+}
+
+// How often each light was drawn at an item. An estimate is C / p of the light drawn, which is
+// checked.
+std::vector<int> count_lights(const Drawn& drawn, std::size_t item) {
+    const test::TestScene& s = open_scene();
+    const std::size_t lights = s.scene.lights.size();
+    const Surface& surface = drawn.surfaces[item];
+    std::vector<int> counts(lights, 0);
+    for (const std::vector<float4>& values : drawn.values) {
+        const float4& value = values[item];
+        const int red = static_cast<int>(std::lround((value.r / value.b - 0.3f) / 0.4f));
+        const int green = static_cast<int>(std::lround((value.g / value.b - 0.6f) / 0.4f));
+        const std::size_t light = red + 4 * green;
+        if (light >= lights) {
+            ADD_FAILURE() << "no light has this hue";
+            return counts;
+        }
+        const double expected =
+            reference::unshadowed(surface, s.scene.materials[surface.material], s.camera,
+                                  s.scene.lights[light], glm::dvec2(0))
+                .value.b /
+            drawn.expected[item * lights + light];
+        EXPECT_NEAR(value.b, expected, 1e-4 * expected);
+        ++counts[light];
+    }
+    return counts;
+}
+
+}  // namespace
+
+TEST(samples, agree_with_the_reference) {
+    FOR_EACH_DEVICE(device)
+    for (const std::string& scene : test::scene_names())
+        for (const Sampler& sampler : all_samplers()) {
+            SCOPED_TRACE(scene);
+            test::expect_pass(test::verifier(scene, device).samples(sampler));
+        }
+}
+
+// Chi-squared of each sampler's frequencies against its probabilities, pixel by pixel.
+TEST(samples, frequencies_follow_the_pdf) {
+    FOR_EACH_DEVICE(device)
+    for (const Sampler& sampler : all_samplers()) {
+        if (sampler.all_lights) continue;
+        SCOPED_TRACE(std::string(sampler.name));
+        const Drawn drawn = draw_often(device, sampler);
+        const std::size_t lights = open_scene().scene.lights.size();
+        double all = 0;
+        double freedom = 0;
+        int pixels = 0;
+        for (std::size_t item = 0; item < drawn.surfaces.size(); item += 5) {
+            if (drawn.surfaces[item].position.w < 0) continue;
+            const std::vector<int> counts = count_lights(drawn, item);
+            double x = 0;
+            double k = -1;
+            for (std::size_t y = 0; y < lights; ++y) {
+                const double expected = draws * drawn.expected[item * lights + y];
+                if (expected < 5) continue;
+                x += std::pow(counts[y] - expected, 2) / expected;
+                ++k;
+            }
+            EXPECT_GT(test::chi_squared_tail(x, k), 1e-6) << "item " << item;
+            all += x;
+            freedom += k;
+            ++pixels;
+        }
+        EXPECT_GT(pixels, 30);
+        EXPECT_GT(test::chi_squared_tail(all, freedom), 1e-4);
+    }
+}
+
+}  // namespace manylight

@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: MIT
+// Is each sampler's mean over many seeds the all-lights image? One test for all: Student's t at
+// every pixel and for the image's mean, corrected for the number of pixels.
+#include <cmath>
+
+#include "support.hpp"
+
+namespace manylight {
+namespace {
+
+struct Statistics {
+    double smallest_pixel = 1;  // smallest probability of any pixel's t, times the pixels
+    double mean = 1;            // probability of the image mean's t
+    double bias = 0;            // mean over the reference's, minus 1
+};
+
+// Luminance per pixel, then the image's mean.
+std::vector<double> luminances(const Image& image) {
+    std::vector<double> out;
+    double sum = 0;
+    for (std::size_t i = 0; i < image.pixel_count(); ++i) {
+        const float* p = image.values.data() + 3 * i;
+        out.push_back(luminance(glm::vec3(p[0], p[1], p[2])));
+        sum += out.back();
+    }
+    out.push_back(sum / static_cast<double>(image.pixel_count()));
+    return out;
+}
+
+struct Moments {
+    std::vector<double> sum, squares;
+    int count = 0;
+    void add(const std::vector<double>& values) {
+        sum.resize(values.size());
+        squares.resize(values.size());
+        for (std::size_t i = 0; i < values.size(); ++i) {
+            sum[i] += values[i];
+            squares[i] += values[i] * values[i];
+        }
+        ++count;
+    }
+    [[nodiscard]] double mean(std::size_t i) const { return sum[i] / count; }
+    // Of the mean.
+    [[nodiscard]] double variance(std::size_t i) const {
+        return std::max(squares[i] / count - mean(i) * mean(i), 0.0) / (count - 1);
+    }
+};
+
+Moments render_seeds(const Device& device, const test::TestScene& scene, RenderOptions options,
+                     int seeds) {
+    Moments moments;
+    for (int i = 0; i < seeds; ++i) {
+        options.seed = static_cast<uint>(1000 + i);
+        moments.add(luminances(test::render(device, scene, options).image));
+    }
+    return moments;
+}
+
+// The variance of a pixel's mean: its own or the mean of its neighbourhood of 5 x 5, whichever is
+// larger. Its own alone takes for certainty what a few seeds did not meet, such as a light that is
+// drawn once in a thousand samples.
+double variance_about(const Moments& moments, std::size_t pixel, const test::TestScene& scene) {
+    const int x = static_cast<int>(pixel % scene.width);
+    const int y = static_cast<int>(pixel / scene.width);
+    double sum = 0;
+    int count = 0;
+    for (int v = std::max(y - 2, 0); v <= std::min<int>(y + 2, scene.height - 1); ++v)
+        for (int u = std::max(x - 2, 0); u <= std::min<int>(x + 2, scene.width - 1); ++u) {
+            sum += moments.variance(v * scene.width + u);
+            ++count;
+        }
+    return std::max(moments.variance(pixel), sum / count);
+}
+
+Statistics judge(const Moments& found, const Moments& reference, const test::TestScene& scene) {
+    Statistics out;
+    const std::size_t pixels = found.sum.size() - 1;
+    for (std::size_t i = 0; i <= pixels; ++i) {
+        const double difference = found.mean(i) - reference.mean(i);
+        // What summing in single precision may do, besides chance.
+        const double rounding = 1e-6 * reference.mean(i) + 1e-9;
+        if (std::abs(difference) <= rounding) continue;
+        double variance = i == pixels ? found.variance(i) : variance_about(found, i, scene);
+        if (reference.count > 1) variance += reference.variance(i);
+        const double t = difference / std::max(std::sqrt(variance), rounding);
+        const double p = test::student_tail(t, found.count - 1);
+        if (i == pixels)
+            out.mean = p;
+        else
+            out.smallest_pixel = std::min(out.smallest_pixel, p * static_cast<double>(pixels));
+    }
+    out.bias = found.mean(pixels) / reference.mean(pixels) - 1;
+    return out;
+}
+
+RenderOptions options_for(std::string_view sampler, uint light_samples) {
+    RenderOptions options;
+    options.sampler = sampler;
+    options.light_samples = light_samples;
+    options.spp = 4;
+    options.pixel_centre = true;
+    return options;
+}
+
+constexpr double significance = 1e-3;
+
+// A test scene at a size that many seeds are quick at.
+test::TestScene small(const std::string& name) {
+    test::TestScene scene = test::scene_named(name);
+    scene.width = 32;
+    scene.height = 20;
+    scene.camera = make_camera(find_view(scene.scene, ""), scene.width, scene.height);
+    return scene;
+}
+
+}  // namespace
+
+TEST(statistics, tails_of_the_distributions) {
+    // Tables of Student's t and of chi-squared.
+    EXPECT_NEAR(test::student_tail(2.228, 10), 0.05, 1e-4);
+    EXPECT_NEAR(test::student_tail(4.587, 10), 0.001, 1e-5);
+    EXPECT_NEAR(test::student_tail(3.291, 1e6), 0.001, 1e-5);
+    EXPECT_NEAR(test::chi_squared_tail(18.307, 10), 0.05, 1e-3);
+    EXPECT_NEAR(test::chi_squared_tail(37.697, 15), 0.001, 5e-5);
+}
+
+// Every sampler that the table calls unbiased is, with 1, 4 and 16 light samples.
+TEST(statistics, unbiased_samplers_are_unbiased) {
+    FOR_EACH_DEVICE(device)
+    for (const std::string name : {"points", "kinds", "oriented"}) {
+        const test::TestScene scene = small(name);
+        const Moments reference =
+            render_seeds(device, scene, options_for("exhaustive", 1), name == "kinds" ? 200 : 1);
+        for (const Sampler& sampler : all_samplers()) {
+            if (sampler.biased || sampler.all_lights) continue;
+            for (const uint light_samples : {1u, 4u, 16u}) {
+                SCOPED_TRACE(
+                    fmt::format("{} on {}, {} light samples", sampler.name, name, light_samples));
+                const Statistics s = judge(
+                    render_seeds(device, scene, options_for(sampler.name, light_samples), 200),
+                    reference, scene);
+                EXPECT_GT(s.smallest_pixel, significance);
+                EXPECT_GT(s.mean, significance);
+            }
+        }
+    }
+}
+
+// The same test sees the bias of the sampler that the table calls biased, and that it loses energy.
+TEST(statistics, the_papers_sampler_is_biased) {
+    FOR_EACH_DEVICE(device) {
+        const test::TestScene scene = small("points");
+        const Moments reference = render_seeds(device, scene, options_for("exhaustive", 1), 1);
+        for (const Sampler& sampler : all_samplers()) {
+            if (!sampler.biased) continue;
+            const Statistics s = judge(
+                render_seeds(device, scene, options_for(sampler.name, 4), 200), reference, scene);
+            EXPECT_LT(s.smallest_pixel, 1e-6) << sampler.name;
+            EXPECT_LT(s.mean, 1e-6) << sampler.name;
+            EXPECT_LT(s.bias, -0.001) << sampler.name;
+        }
+    }
+}
+
+// Jittered pixel samples estimate the same image whatever the light sampler.
+TEST(statistics, jittered_samples_are_unbiased) {
+    FOR_EACH_DEVICE(device) {
+        const test::TestScene scene = small("oriented");
+        RenderOptions exhaustive = options_for("exhaustive", 1);
+        exhaustive.spp = 64;
+        exhaustive.pixel_centre = false;
+        RenderOptions defensive = options_for("contribution-defensive", 2);
+        defensive.spp = 3;
+        defensive.pixel_centre = false;
+        const Statistics s = judge(render_seeds(device, scene, defensive, 200),
+                                   render_seeds(device, scene, exhaustive, 20), scene);
+        EXPECT_GT(s.smallest_pixel, significance);
+        EXPECT_GT(s.mean, significance);
+    }
+}
+
+}  // namespace manylight
