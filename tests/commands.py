@@ -46,6 +46,10 @@ class CommandTest(unittest.TestCase):
         self.assertIn("matrix", run.stdout)  # what memory will be needed
         self.assertEqual(run.stderr, "")     # no progress bar where there is no terminal
 
+    def test_options_may_come_before_the_file(self):
+        self.run_program("render", "-q", "--height", 8, "--aov", "depth", "-o", "a.exr", self.cornell)
+        self.assertEqual(self.files(), ["a.exr"])
+
     def test_render_outputs_and_stats(self):
         self.run_program("render", self.cornell, "--height", 24, "--width", 40, "-o", "a.exr", "-o",
                          "b.png", "--stats", "s.json", "--cluster-map", "c.png", "--sampler",
@@ -56,7 +60,8 @@ class CommandTest(unittest.TestCase):
                                height=24, lights=64).items():
             self.assertEqual(stats[key], value, key)
         self.assertGreater(stats["clusters"], 3)
-        self.assertGreater(stats["rays"]["primary"], 2 * 40 * 24 - 1)
+        # Two pixel samples, and the rays through the centres that clusters are made from.
+        self.assertEqual(stats["rays"]["primary"], 3 * 40 * 24)
         self.assertGreater(stats["rays"]["shadow"], 0)
         self.assertGreater(stats["memory_bytes"]["device_peak"], stats["memory_bytes"]["matrix"])
         self.assertGreater(stats["memory_bytes"]["matrix"], 0)
@@ -79,9 +84,18 @@ class CommandTest(unittest.TestCase):
         run = self.run_program("compare", "a.exr", "b.exr", "--json")
         self.assertGreater(json.loads(run.stdout)["relmse"], 0)
 
-    def test_aovs_are_layers(self):
+    def test_header_and_layers_of_an_exr(self):
         self.run_program("render", self.cornell, "--height", 16, "-o", "a.exr", "--aov",
-                         "normal,depth", "--aov", "lights")
+                         "normal,depth", "--aov", "lights", "--seed", 4294967295)
+        header = subprocess.run(["oiiotool", "--info", "-v", "a.exr"], cwd=self.folder,
+                                capture_output=True, text=True, check=True).stdout
+        for words in ("8 channel, float openexr",
+                      "R, G, B, depth.Z, lights.Y, normal.X, normal.Y, normal.Z",
+                      'manylight:sampler: "contribution-defensive"',
+                      'manylight:seed: "4294967295"', "manylight:version:", "manylight:device:",
+                      "manylight:seconds:", 'manylight:light_samples: "4"'):
+            self.assertIn(words, header)
+        self.assertNotIn("albedo", header)
 
     def test_emitter_points(self):
         for points, lights in ((0, 2), (9, 9)):
@@ -111,7 +125,7 @@ class CommandTest(unittest.TestCase):
                 (["--width", 0], ["--width", "0"]),
                 (["--height", 70000], ["--height", "70000"]),
                 (["--memory", "lots"], ["--memory", "lots"]),
-                (["--memory", "1M"], ["--memory", "1 MiB"]),
+                (["--memory", "1M"], ["--memory", "1.0 MiB"]),
                 (["--device", "abacus"], ["--device", "abacus"]),
                 (["--device", 99], ["--device", "99"]),
                 (["--camera", "top"], ["--camera", "top", "front"]),
@@ -134,6 +148,18 @@ class CommandTest(unittest.TestCase):
             with self.subTest(name=name):
                 self.refuse("render", self.cornell, "-o", name, words=words)
 
+    def test_outputs_do_not_overwrite_each_other_or_the_scene(self):
+        scene = self.folder / "x.png"  # a scene by another name
+        scene.write_bytes(pathlib.Path(self.cornell).read_bytes())
+        for arguments, words in (
+                (["-o", "a.exr", "-o", "./a.exr"], ["a.exr", "--output"]),
+                (["-o", "a.png", "--cluster-map", "a.png"], ["a.png", "--cluster-map"]),
+                (["-o", "a.png", "--stats", "a.png"], ["a.png", "--stats"]),
+                (["-o", "x.png"], ["x.png", "scene"])):
+            with self.subTest(arguments=arguments):
+                self.refuse("render", "x.png", *arguments, words=words)
+                self.assertEqual(self.files(), ["x.png"])
+
     def test_layers_need_an_exr(self):
         self.refuse("render", self.cornell, "-o", "a.png", "--aov", "depth", words=["--aov", ".exr"])
 
@@ -147,7 +173,7 @@ class CommandTest(unittest.TestCase):
         self.assertEqual(self.files(), ["a.exr", "bad.gltf"])
 
     def test_missing_arguments(self):
-        self.refuse(words=["subcommand"])
+        self.refuse(words=["no command", "--help"])
         self.refuse("render", words=["file"])
         self.refuse("scene", "cornell", words=["--output"])
 
@@ -155,11 +181,17 @@ class CommandTest(unittest.TestCase):
 
     def test_scene(self):
         self.run_program("scene", "pinhole", "-o", "p.glb")
-        self.assertEqual((self.folder / "p.glb").read_bytes(), (SCENES / "pinhole.glb").read_bytes())
+        (self.folder / "p.glb").unlink()
+        kept = sorted(path.stem for path in SCENES.glob("*.glb"))
+        self.assertEqual(kept, ["blinds", "cornell", "glossy", "pinhole"])
+        for name in kept:
+            self.run_program("scene", name, "-o", "p.glb")
+            self.assertEqual((self.folder / "p.glb").read_bytes(),
+                             (SCENES / f"{name}.glb").read_bytes(), name)
         self.run_program("scene", "city", "--lights", 50, "-o", "c.glb")
         self.refuse("scene", "village", "-o", "v.glb", words=["village", "cornell"])
         self.refuse("scene", "cornell", "-o", "c.gltf", words=["c.gltf", ".glb"])
-        self.refuse("scene", "cornell", "-o", "no/c.glb", words=["no/c.glb"], code=1)
+        self.refuse("scene", "cornell", "-o", "no/c.glb", words=["no/c.glb"])
         self.refuse("scene", "dragon", "--mesh", "none.glb", "-o", "d.glb", words=["none.glb"])
         self.assertEqual(self.files(), ["c.glb", "p.glb"])
 

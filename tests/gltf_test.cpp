@@ -167,6 +167,14 @@ TEST(gltf, normals_under_scale) {
     EXPECT_EQ(scene.vertex_normals[0], glm::vec3(0));  // none: flat
     expect_near(scene.vertex_normals[1], {1, 0, 0});
     expect_near(scene.vertex_normals[2], {0, 1, 0});
+    // (1 1 0) at the square's corner (1 1 0): its normal is (1/2, 1/4, 0), made unit.
+    file.primitive()["attributes"] = {{"POSITION", 1}, {"NORMAL", 1}};
+    file.primitive()["mode"] = 5;
+    const Scene square = file.load();
+    const auto corner = std::ranges::find(square.vertices, glm::vec3(2, 4, 0));
+    ASSERT_NE(corner, square.vertices.end());
+    expect_near(square.vertex_normals[corner - square.vertices.begin()],
+                {2 / std::sqrt(5.f), 1 / std::sqrt(5.f), 0});
 }
 
 TEST(gltf, only_the_chosen_scene) {

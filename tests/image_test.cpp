@@ -3,11 +3,15 @@
 
 #include <OpenImageIO/imageio.h>
 
+#include <sys/resource.h>
+
+#include <csignal>
 #include <filesystem>
 #include <fstream>
 
 #include "error.hpp"
 #include "output/metrics.hpp"
+#include "output/write_file.hpp"
 #include "support.hpp"
 
 namespace manylight {
@@ -19,6 +23,25 @@ Image gradient(unsigned width, unsigned height) {
         image.values[i] = 0.01f * static_cast<float>(i);
     return image;
 }
+
+// While it lives, files grow no further than this, as on a full disk.
+class FileSizeLimit {
+  public:
+    explicit FileSizeLimit(rlim_t bytes) {
+        handler_ = std::signal(SIGXFSZ, SIG_IGN);
+        getrlimit(RLIMIT_FSIZE, &before_);
+        const rlimit limit{bytes, before_.rlim_max};
+        setrlimit(RLIMIT_FSIZE, &limit);
+    }
+    ~FileSizeLimit() {
+        setrlimit(RLIMIT_FSIZE, &before_);
+        (void)std::signal(SIGXFSZ, handler_);
+    }
+
+  private:
+    rlimit before_{};
+    void (*handler_)(int);
+};
 
 std::string contents(const std::string& path) {
     std::ifstream in(path, std::ios::binary);
@@ -54,10 +77,14 @@ TEST(image, png_is_srgb) {
     Image image(3, 1, {"R", "G", "B"});
     image.values = {0, 0.25f, 0.5f, -1, 7, 0.001f, 0.5f, 0.5f, 0.5f};
     write_png(path, image, 2, {});
-    const Image found = read_rgb(path);
-    const std::vector<int> expected = {0, 188, 255, 0, 255, 7, 255, 255, 255};
-    for (std::size_t i = 0; i < expected.size(); ++i)
-        EXPECT_EQ(std::lround(found.values[i] * 255), expected[i]) << i;
+    const auto in = OIIO::ImageInput::open(path);
+    ASSERT_TRUE(in);
+    std::vector<unsigned char> found(9);
+    in->read_image(0, 0, 0, -1, OIIO::TypeDesc::UINT8, found.data());
+    EXPECT_EQ(found, (std::vector<unsigned char>{0, 188, 255, 0, 255, 7, 255, 255, 255}));
+    // Reading takes the codes back to linear values.
+    EXPECT_NEAR(read_rgb(path).values[1], 0.5, 0.003);
+    EXPECT_NEAR(read_rgb(path).values[5], 0.002, 0.0003);
 }
 
 // An older file is replaced whole or stays as it was, and nothing else is left behind.
@@ -70,6 +97,14 @@ TEST(image, failed_writes_leave_the_old_file) {
     const std::string before = contents(path);
     write_exr(path, {gradient(5, 5)}, {});
     EXPECT_NE(contents(path), before);
+    const std::string whole = contents(path);
+    EXPECT_THROW(
+        {
+            const FileSizeLimit limit(1000);
+            write_exr(path, {gradient(50, 50)}, {});
+        },
+        RuntimeError);
+    EXPECT_EQ(contents(path), whole);
     fs::create_directories(folder / "b.exr");  // in the way of the rename
     EXPECT_THROW(write_exr((folder / "b.exr").string(), {gradient(4, 4)}, {}), RuntimeError);
     EXPECT_THROW(write_exr((folder / "none" / "c.exr").string(), {gradient(4, 4)}, {}),
@@ -78,9 +113,13 @@ TEST(image, failed_writes_leave_the_old_file) {
 }
 
 TEST(image, outputs_are_checked_before_the_work) {
-    EXPECT_NO_THROW(check_output(test::temporary("new.exr")));
-    for (const std::string path : {"a.jpg", "a", "nowhere/a.exr"})
-        EXPECT_THROW(check_output(test::temporary(path)), InputError) << path;
+    const std::vector<std::string> endings = {".exr", ".png"};
+    for (const char* path : {"new.exr", "new.png"})
+        EXPECT_NO_THROW(check_output("-o", test::temporary(path), endings)) << path;
+    for (const char* path : {"a.jpg", "a", "nowhere/a.exr"})
+        EXPECT_THROW(check_output("-o", test::temporary(path), endings), InputError) << path;
+    EXPECT_NO_THROW(check_output("--stats", test::temporary("a")));
+    EXPECT_THROW(check_output("--stats", "/"), InputError);
 }
 
 TEST(image, auto_exposure_ignores_black) {

@@ -155,9 +155,10 @@ CHANGES = {
     "translation huge": (put(["nodes", 1, "translation"], [0, 1e300, 0]), ["nodes[1].translation[1]", "1e+300"]),
     "matrix of 15": (put(["nodes", 3], {"matrix": [1] * 15}), ["nodes[3].matrix", "15"]),
     "matrix and scale": (put(["nodes", 3, "matrix"], [1, 0, 0, 0] * 4), ["nodes[3]", "both"]),
-    "transforms overflow": (lambda d: (d["nodes"][0].update(scale=[1e30, 1, 1]),
-                                       d["nodes"][3].update(scale=[1e30, 1, 1])), ["nodes[3]", "range"]),
-    "vertices overflow": (put(["nodes", 0, "scale"], [3e38, 3e38, 3e38]), ["meshes[0].primitives[0]"]),
+    "transforms overflow": (lambda d: (d["nodes"][0].update(scale=[1e8, 1, 1]),
+                                       d["nodes"][3].update(scale=[1e8, 1, 1])), ["nodes[3]", "range"]),
+    "vertices overflow": (lambda d: d["nodes"][0].update(translation=[0, 9e8, 0], scale=[1, 9e8, 1]),
+                          ["meshes[0].primitives[0]", "POSITION"]),
     "light beyond": (put(["nodes", 1, "extensions", "KHR_lights_punctual", "light"], 2),
                      ["nodes[1]", "light", "2"]),
     "light missing": (put(["nodes", 1, "extensions", "KHR_lights_punctual"], {}), ["'light' is missing"]),
@@ -257,6 +258,25 @@ CHANGES = {
     "buffer uri a number": (put(BUFFER + ["uri"], 5), ["buffers[0].uri", "5"]),
     "buffer data not base64": (put(BUFFER + ["uri"], "data:application/octet-stream,abc"),
                                ["buffers[0].uri", "base64"]),
+    "buffer data of another type": (put(BUFFER + ["uri"], "data:text/html;base64,AAAA"),
+                                    ["buffers[0].uri", "text/html"]),
+    "skin matrices beyond": (put(["skins", 0, "inverseBindMatrices"], 3), ["inverseBindMatrices", "3"]),
+    "animation sampler beyond": (put(["animations"], [{"samplers": [], "channels": [
+        {"sampler": 0, "target": {"node": 0}}]}]), ["animations[0].channels[0].sampler", "0"]),
+    "animation input beyond": (put(["animations"], [{"samplers": [{"input": 9, "output": 0}],
+                                                     "channels": []}]), ["samplers[0].input", "9"]),
+    "morph target beyond": (put(PRIMITIVE + ["targets"], [{"POSITION": 8}]), ["targets[0].POSITION", "8"]),
+    "light too bright": (put(LIGHT + ["intensity"], 3e38), ["lights[0]", "3e+38"]),
+    "light infinitely bright": (lambda d: d["extensions"]["KHR_lights_punctual"]["lights"][0].update(
+        color=[1e10, 1, 1], intensity=3e38), ["lights[0]", "inf"]),
+    "emission too bright": (lambda d: (d["materials"][0].update(emissiveFactor=[1, 1, 1]),
+                                       d["materials"][0]["extensions"][
+                                           "KHR_materials_emissive_strength"].update(
+                                               emissiveStrength=1e30)), ["materials[0]", "1e+30"]),
+    "spot without direction": (lambda d: d["nodes"][1].update(
+        scale=[0, 0, 0], extensions={"KHR_lights_punctual": {"light": 1}}), ["nodes[1]", "direction"]),
+    "camera without direction": (put(["nodes", 2, "scale"], [1, 1, 0]), ["nodes[2]", "direction"]),
+    "vertices far away": (put(["nodes", 0, "translation"], [2e9, 0, 0]), ["nodes[0]", "2000000000"]),
     "skin joint beyond": (put(["skins", 0, "joints"], [8]), ["skins[0].joints[0]", "8"]),
 }
 
@@ -320,7 +340,8 @@ def refused(program, path, words):
 
 def main():
     program = sys.argv[1]
-    folder = pathlib.Path(sys.argv[2] if len(sys.argv) > 2 else tempfile.mkdtemp())
+    temporary = tempfile.TemporaryDirectory()
+    folder = pathlib.Path(sys.argv[2] if len(sys.argv) > 2 else temporary.name)
     inside = folder / "scenes"  # so that ../data.bin exists and is still refused
     inside.mkdir(parents=True, exist_ok=True)
     (folder / "data.bin").write_bytes(DATA)

@@ -7,10 +7,10 @@ namespace {
 RowSum sees(uint visible, uint facing) { return {0, 0, visible, facing}; }
 
 std::vector<uint> split(Device device, const std::vector<Region>& regions,
-                        const std::vector<RowSum>& totals) {
+                        const std::vector<RowSum>& totals, bool weighed = false) {
     Buffer<uint> marks = device.allocate<uint>(regions.size());
     RefinementStage(device).split(device.upload(regions), device.upload(totals), 0,
-                                  static_cast<uint>(regions.size()), 0.5f, 3, marks);
+                                  static_cast<uint>(regions.size()), {weighed, 0.5f}, 3, marks);
     return marks.download();
 }
 
@@ -44,6 +44,20 @@ TEST(refinement, umbra_and_penumbra) {
         EXPECT_EQ(split(device, four, {dark, lit, dark, lit}), (Marks{1, 0, 1, 0})) << "penumbra";
         EXPECT_EQ(split(device, four, {dark, dark, dark, sees(0, 0)}), (Marks{0, 0, 0, 0}))
             << "umbra beside a pixel that no light faces";
+    }
+}
+
+// A representative that sees one light of ten, which gives most of what could reach it, is lit
+// where lights are weighed by their contribution.
+TEST(refinement, weighed_by_contribution) {
+    const Region leaf{0, 0, 16, 1, 0, 0};
+    FOR_EACH_DEVICE(device) {
+        const RowSum bright{8, 10, 1, 10};
+        EXPECT_EQ(split(device, {leaf}, {bright}, false), std::vector<uint>{1});
+        EXPECT_EQ(split(device, {leaf}, {bright}, true), std::vector<uint>{0});
+        const RowSum dim{2, 10, 9, 10};
+        EXPECT_EQ(split(device, {leaf}, {dim}, false), std::vector<uint>{0});
+        EXPECT_EQ(split(device, {leaf}, {dim}, true), std::vector<uint>{1});
     }
 }
 

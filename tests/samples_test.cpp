@@ -59,8 +59,7 @@ Drawn draw_often(Device device, const Sampler& sampler) {
     options.tile_size = 16;
     Clustering clustering(device, uploaded, options, tiles.count);
     clustering.build(tiles, surfaces, [](std::size_t) {});
-    Mixture mixture{sampler.shares.visible, sampler.shares.unshadowed, sampler.shares.power, 0};
-    for (const Light& light : s.scene.lights) mixture.total_power += light.emission.w;
+    const Mixture mixture = mixture_of(sampler, s.scene.lights);
     const std::vector<uint> rows = clustering.item_rows();
     const std::vector<uint> words = clustering.matrix().values.download();
     const std::vector<RowSum> totals = clustering.totals();
@@ -78,19 +77,23 @@ Drawn draw_often(Device device, const Sampler& sampler) {
         out.expected.insert(out.expected.end(), p.begin(), p.end());
     }
     clustering.normalise(mixture);
-    Matrix power(device, 1, lights);
-    power.values.clear();
-    power.totals.clear();
-    PdfStage(device, uploaded).normalise(1, mixture, power);
     Arguments tables = clustering.tables();
-    tables.set("power_cdf", power.values);
+    tables.set("power_cdf", PdfStage(device, uploaded).of_powers(mixture));
     SampleStage stage(device, uploaded, sampler.kernel_file);
-    Buffer<float4> estimates = device.allocate<float4>(item_count(tiles));
+    Estimates estimates{device.allocate<float4>(item_count(tiles)),
+                        device.allocate<float4>(item_count(tiles))};
     for (uint i = 0; i < draws; ++i) {
         stage.draw(tiles, {i, 11, false}, 1, surfaces, tables, estimates, [](std::size_t) {});
-        out.values.push_back(estimates.download());
+        out.values.push_back(estimates.sums.download());
     }
     return out;
+}
+
+// The light whose hue an estimate has.
+std::size_t light_of(const float4& value) {
+    const auto red = std::lround((value.r / value.b - 0.3f) / 0.4f);
+    const auto green = std::lround((value.g / value.b - 0.6f) / 0.4f);
+    return static_cast<std::size_t>(red + 4 * green);
 }
 
 // How often each light was drawn at an item. An estimate is C / p of the light drawn, which is
@@ -102,9 +105,7 @@ std::vector<int> count_lights(const Drawn& drawn, std::size_t item) {
     std::vector<int> counts(lights, 0);
     for (const std::vector<float4>& values : drawn.values) {
         const float4& value = values[item];
-        const int red = static_cast<int>(std::lround((value.r / value.b - 0.3f) / 0.4f));
-        const int green = static_cast<int>(std::lround((value.g / value.b - 0.6f) / 0.4f));
-        const std::size_t light = red + 4 * green;
+        const std::size_t light = light_of(value);
         if (light >= lights) {
             ADD_FAILURE() << "no light has this hue";
             return counts;
@@ -160,6 +161,35 @@ TEST(samples, frequencies_follow_the_pdf) {
         }
         EXPECT_GT(pixels, 30);
         EXPECT_GT(test::chi_squared_tail(all, freedom), 1e-4);
+    }
+}
+
+// A CDF of widths 1, 0, 2: each boundary belongs to the light that begins there.
+TEST(samples, boundaries_of_a_small_cdf) {
+    const test::TestScene& s = open_scene();
+    std::vector<uint> cdf(s.scene.lights.size(), 3);
+    cdf[0] = cdf[1] = 1;
+    const Tiles tiles = all_tiles(size, size, 16);
+    for (Device device : test::devices()) {
+        const WideBvh bvh = build_wide_bvh(s.scene, 8, 8, 10);
+        const DeviceScene uploaded = upload_scene(device, s.scene, bvh, s.camera);
+        Buffer<Surface> surfaces = device.allocate<Surface>(item_count(tiles));
+        GBufferStage(device, uploaded).trace(tiles, {}, surfaces);
+        Estimates estimates{device.allocate<float4>(item_count(tiles)),
+                            device.allocate<float4>(item_count(tiles))};
+        SampleStage stage(device, uploaded, find_sampler("power").kernel_file);
+        std::map<std::size_t, int> counts;
+        for (uint i = 0; i < 40; ++i) {
+            stage.draw(tiles, {i, 3, false}, 1, surfaces,
+                       Arguments().set("power_cdf", device.upload(cdf)), estimates,
+                       [](std::size_t) {});
+            for (const float4& e : estimates.sums.download())
+                if (e.b > 0) ++counts[light_of(e)];
+        }
+        const double all = counts[0] + counts[2];
+        EXPECT_EQ(counts.size(), 2u);
+        EXPECT_GT(all, 5000);
+        EXPECT_NEAR(counts[0] / all, 1. / 3, 5 * std::sqrt(2. / 9 / all));
     }
 }
 

@@ -71,6 +71,9 @@ void make_kinds(GltfWriter& out) {
     out.add_mesh("floor", floor, out.add_material({0.5f, 0.5f, 0.55f}, 0.6f, 0.5f));
     out.add_mesh("ball", make_ball({-0.6f, 0.6f, 0}, 0.6f),
                  out.add_material({0.9f, 0.6f, 0.3f}, 1, 0.3f));
+    Mesh hollow = make_ball({-1.9f, 0.4f, 0.9f}, 0.4f);  // its normals are opposite to its winding
+    for (glm::vec3& n : hollow.normals) n = -n;
+    out.add_mesh("hollow", hollow, out.add_diffuse({0.6f, 0.4f, 0.7f}));
     Mesh box;
     box.add_box({0.8f, 0, -0.4f}, {0.7f, 1, 0.7f}, 0.5f);
     out.add_mesh("box", box, out.add_diffuse({0.3f, 0.7f, 0.4f}));

@@ -61,6 +61,7 @@ struct LoadedScene {
     std::string view_name;
     Camera camera;
     unsigned width, height;
+    unsigned emitter_points;  // as made; 0: area lights
 };
 
 /// Loads a scene, makes its emitters lights and finds the camera; prints the file's warnings.

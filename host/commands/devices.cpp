@@ -8,14 +8,11 @@ namespace manylight {
 
 int run_devices() {
     const std::vector<DeviceInfo> devices = list_devices();
-    if (devices.empty()) {
-        fmt::print("no OpenCL device: install a driver, such as Debian's pocl-opencl-icd\n");
-        return 1;
-    }
     std::size_t chosen = devices.size();
     try {
         chosen = select_device("");
-    } catch (const std::exception&) {  // none is usable: the list says why
+    } catch (const std::exception&) {  // none is usable: the list says why, if there is one
+        if (devices.empty()) throw;
     }
     for (std::size_t i = 0; i < devices.size(); ++i) {
         const DeviceInfo& d = devices[i];

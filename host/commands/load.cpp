@@ -33,7 +33,8 @@ LoadedScene load(const SceneArguments& arguments) {
     Scene& scene = out.scene;
     scene = load_scene(arguments.file);
     for (const std::string& warning : scene.warnings) fmt::print(stderr, "warning: {}\n", warning);
-    add_emitters(scene, arguments.emitter_points.value_or(scene.emitter_points.value_or(0)));
+    out.emitter_points = arguments.emitter_points.value_or(scene.emitter_points.value_or(0));
+    add_emitters(scene, out.emitter_points);
     if (scene.lights.empty())
         fmt::print(stderr, "warning: {}: the scene has no lights\n", scene.file);
     const View view = find_view(scene, arguments.camera);

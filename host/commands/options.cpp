@@ -7,6 +7,7 @@
 
 #include "commands/commands.hpp"
 #include "error.hpp"
+#include "pipeline/aov.hpp"
 #include "scene/builtin/builtin.hpp"
 
 namespace manylight {
@@ -31,15 +32,15 @@ std::size_t parse_bytes(const std::string& text) {
 }
 
 // A whole number within limits; CLI11's own range prints limits of 300 digits.
-CLI::Validator whole(double lower, double upper) {
+CLI::Validator whole(std::uint64_t lower, std::uint64_t upper) {
     return CLI::Validator(
         [lower, upper](std::string& text) {
-            char* end = nullptr;
-            const double value = std::strtod(text.c_str(), &end);
-            if (!text.empty() && *end == '\0' && value == std::floor(value) && value >= lower &&
-                value <= upper)
+            const bool digits =
+                !text.empty() && text.size() < 19 &&
+                std::ranges::all_of(text, [](char c) { return c >= '0' && c <= '9'; });
+            if (digits && std::stoull(text) >= lower && std::stoull(text) <= upper)
                 return std::string();
-            return fmt::format("{} is no whole number from {:.0f} to {:.0f}", text, lower, upper);
+            return fmt::format("{} is no whole number from {} to {}", text, lower, upper);
         },
         "");
 }
@@ -64,10 +65,14 @@ const CLI::Validator power_of_two(
     },
     "");
 
-constexpr double largest_uint = 4294967295.0;
+constexpr std::uint64_t largest_uint = 4294967295;
 
 void add_scene(CLI::App& command, SceneArguments& scene) {
-    command.add_option("file", scene.file, "glTF 2.0 scene, .gltf or .glb")->required();
+    command.add_option("file", scene.file, "glTF 2.0 scene, .gltf or .glb")
+        ->required()
+        ->check([](const std::string& file) {
+            return file.empty() ? std::string("the name is empty") : std::string();
+        });
     command.add_option("--camera", scene.camera, "camera by name (default: the file's first)");
     command
         .add_option("--emitter-points", scene.emitter_points,
@@ -101,7 +106,7 @@ void add_clusters(CLI::App& command, ClusterOptions& clusters) {
         ->capture_default_str()
         ->group(group);
     command
-        .add_option("--visibility-threshold", clusters.visibility_threshold,
+        .add_option("--visibility-threshold", clusters.shadow.threshold,
                     "split where less than this share of the lights is seen")
         ->check(number(0, 1))
         ->capture_default_str()
@@ -127,9 +132,11 @@ void add_render(CLI::App& app, std::function<int()>& run) {
     CLI::App* command = app.add_subcommand("render", "render a scene to an image");
     add_scene(*command, arguments->scene);
     RenderOptions& o = arguments->options;
-    command->add_option("-o,--output", arguments->outputs,
-                        "image, .exr or .png; may be given several times (default: the scene's "
-                        "name with .png, here)");
+    command
+        ->add_option("-o,--output", arguments->outputs,
+                     "image, .exr or .png; may be given several times (default: the scene's "
+                     "name with .png, here)")
+        ->allow_extra_args(false);
     command->add_option("--sampler", o.sampler, "see below")->capture_default_str();
     command->add_option("--light-samples", o.light_samples, "light samples per pixel sample")
         ->check(whole(1, 65536))
@@ -145,7 +152,9 @@ void add_render(CLI::App& app, std::function<int()>& run) {
         ->add_option("--exposure", arguments->exposure,
                      "stops by which a .png is brighter than the scene (default: automatic)")
         ->check(number(-100, 100));
-    command->add_option("--aov", o.aovs, "extra layers of the .exr, see below")->delimiter(',');
+    command->add_option("--aov", o.aovs, "extra layers of the .exr, see below")
+        ->delimiter(',')
+        ->allow_extra_args(false);
     command->add_option("--cluster-map", arguments->cluster_map,
                         "picture of the clusters and their representatives, .png");
     command->add_option("--stats", arguments->stats, "seconds, rays and memory, as JSON");
@@ -161,6 +170,7 @@ void add_render(CLI::App& app, std::function<int()>& run) {
                     "  manylight render scene.glb --sampler exhaustive -o reference.exr\n"
                     "  manylight render scene.glb --cluster-map clusters.png --stats stats.json\n");
     command->callback([&run, arguments] {
+        (void)find_sampler(arguments->options.sampler);
         for (const std::string& name : arguments->options.aovs)
             if (std::ranges::none_of(all_aovs(), [&](const Aov& a) { return a.name == name; }))
                 throw CLI::ValidationError("--aov", "there is no layer " + name);
@@ -210,7 +220,7 @@ int run_program(int argc, char** argv) {
         "manylight renders the direct light of hundreds to a million lights on any OpenCL device.",
         "manylight");
     app.set_version_flag("--version", "manylight " MANYLIGHT_VERSION);
-    app.require_subcommand(1);
+    app.require_subcommand(0, 1);
     app.footer("\n'manylight COMMAND --help' tells more, with examples.\n");
     std::function<int()> run;
     add_render(app, run);
@@ -235,6 +245,7 @@ int run_program(int argc, char** argv) {
     } catch (const CLI::ParseError& error) {
         throw InputError("{}", error.what());
     }
+    if (!run) throw InputError("no command is given; 'manylight --help' lists them");
     return run();
 }
 

@@ -2,142 +2,144 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "clock.hpp"
 #include "commands/commands.hpp"
 #include "error.hpp"
 #include "output/cluster_map.hpp"
+#include "output/write_file.hpp"
+#include "pipeline/frame.hpp"
 
 namespace manylight {
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
-double seconds_since(Clock::time_point start) {
-    return std::chrono::duration<double>(Clock::now() - start).count();
-}
+using nlohmann::json;
+namespace fs = std::filesystem;
 
 std::string mebibytes(std::size_t bytes) {
     return fmt::format("{:.1f} MiB", static_cast<double>(bytes) / (1 << 20));
+}
+
+// The files to be made, with the options that name them.
+std::vector<std::pair<std::string, std::string>> files_of(const RenderArguments& arguments,
+                                                          const std::vector<std::string>& images) {
+    std::vector<std::pair<std::string, std::string>> files;
+    for (const std::string& image : images) files.emplace_back("--output", image);
+    if (!arguments.cluster_map.empty()) files.emplace_back("--cluster-map", arguments.cluster_map);
+    if (!arguments.stats.empty()) files.emplace_back("--stats", arguments.stats);
+    return files;
+}
+
+// Before any work: every file can be written, and none is the scene or another one.
+void check_files(const RenderArguments& arguments, const std::vector<std::string>& images) {
+    const auto files = files_of(arguments, images);
+    for (const auto& [option, path] : files) {
+        std::vector<std::string> endings;
+        if (option == "--output") endings = {".exr", ".png"};
+        if (option == "--cluster-map") endings = {".png"};
+        check_output(option, path, endings);
+    }
+    const auto same = [](const std::string& a, const std::string& b) {
+        std::error_code error;
+        return fs::weakly_canonical(fs::absolute(a), error) ==
+               fs::weakly_canonical(fs::absolute(b), error);
+    };
+    for (std::size_t i = 0; i < files.size(); ++i) {
+        const auto& [option, path] = files[i];
+        if (same(path, arguments.scene.file))
+            throw InputError("{} {}: is the scene itself", option, path);
+        for (std::size_t j = 0; j < i; ++j)
+            if (same(path, files[j].second))
+                throw InputError("{} {}: is written by {} too", option, path, files[j].first);
+    }
 }
 
 void print_plan(const LoadedScene& loaded, const Plan& plan, const DeviceInfo& device) {
     fmt::print("{}: {} triangles, {} lights, camera '{}'\n", loaded.scene.file,
                loaded.scene.triangle_count(), loaded.scene.lights.size(), loaded.view_name);
     fmt::print("{} ({})\n", device.name, device.platform);
-    fmt::print("memory: scene {}, image {}, pixels in work {}", mebibytes(plan.scene_bytes),
-               mebibytes(plan.image_bytes), mebibytes(plan.batch_bytes));
-    if (plan.matrix_bytes > 0)
+    fmt::print("memory: {}: scene {}, image {}, pixels in work {}", mebibytes(plan.total_bytes()),
+               mebibytes(plan.scene_bytes), mebibytes(plan.image_bytes),
+               mebibytes(plan.batch_bytes));
+    if (plan.clusters)
         fmt::print(", of which contribution matrix {}", mebibytes(plan.matrix_bytes));
     fmt::print("; {} batch{}\n", plan.batches, plan.batches == 1 ? "" : "es");
 }
 
-nlohmann::json make_stats(const RenderOptions& o, const LoadedScene& loaded, const Plan& plan,
-                          const FrameResult& result, Device& device) {
-    nlohmann::json stages = nlohmann::json::object();
-    for (const auto& [stage, seconds] : device.stage_seconds()) stages[stage] = seconds;
+// All parameters that the image depends on.
+json make_parameters(const RenderOptions& o, const LoadedScene& loaded, uint light_samples) {
     return {
-        {"version", MANYLIGHT_VERSION},
         {"scene", loaded.scene.file},
+        {"camera", loaded.view_name},
+        {"emitter_points", loaded.emitter_points},
         {"sampler", o.sampler},
-        {"light_samples", o.light_samples},
+        {"light_samples", light_samples},
         {"spp", o.spp},
         {"seed", o.seed},
-        {"width", loaded.width},
-        {"height", loaded.height},
-        {"device", device.info().name},
-        {"platform", device.info().platform},
-        {"triangles", loaded.scene.triangle_count()},
-        {"lights", loaded.scene.lights.size()},
-        {"clusters", result.clusters},
-        {"batches", plan.batches},
-        {"rays", {{"primary", result.primary_rays}, {"shadow", result.shadow_rays}}},
-        {"memory_bytes", {{"device_peak", device.peak_bytes()}, {"matrix", plan.matrix_bytes}}},
-        {"seconds",
-         {{"compile", device.compile_seconds()},
-          {"prepare", result.prepare_seconds},
-          {"render", result.render_seconds}}},
-        {"stage_seconds", stages},
+        {"pixel_centre", !o.jitters()},
+        {"width", o.width},
+        {"height", o.height},
+        {"tile_size", o.clusters.tile_size},
+        {"max_depth", o.clusters.max_depth},
+        {"normal_threshold", o.clusters.normal_threshold},
+        {"visibility_threshold", o.clusters.shadow.threshold},
     };
 }
 
-Metadata make_metadata(const nlohmann::json& stats) {
-    return {
-        {"Software", fmt::format("manylight {}", stats["version"].get<std::string>())},
-        {"manylight:version", stats["version"].get<std::string>()},
-        {"manylight:scene", stats["scene"].get<std::string>()},
-        {"manylight:sampler", stats["sampler"].get<std::string>()},
-        {"manylight:light_samples", stats["light_samples"].get<int>()},
-        {"manylight:spp", stats["spp"].get<int>()},
-        {"manylight:seed", fmt::format("{}", stats["seed"].get<unsigned>())},
-        {"manylight:device", stats["device"].get<std::string>()},
-        {"manylight:seconds", stats["seconds"]["total"].get<float>()},
-    };
+json make_stats(json parameters, const LoadedScene& loaded, const Plan& plan,
+                const FrameResult& result, Device& device) {
+    json stats = std::move(parameters);
+    stats["version"] = MANYLIGHT_VERSION;
+    stats["device"] = device.info().name;
+    stats["platform"] = device.info().platform;
+    stats["triangles"] = loaded.scene.triangle_count();
+    stats["lights"] = loaded.scene.lights.size();
+    stats["clusters"] = result.clusters;
+    stats["batches"] = plan.batches;
+    stats["rays"] = {{"primary", result.primary_rays}, {"shadow", result.shadow_rays}};
+    stats["memory_bytes"] = {{"device_peak", device.peak_bytes()},
+                             {"planned", plan.total_bytes()},
+                             {"matrix", plan.matrix_bytes}};
+    stats["seconds"] = {{"compile", device.compile_seconds()},
+                        {"prepare", result.prepare_seconds},
+                        {"render", result.render_seconds}};
+    stats["stage_seconds"] = device.stage_seconds();
+    return stats;
 }
 
-void write_text(const std::string& path, const std::string& text) {
-    const std::string aside = path + ".part";
-    std::error_code error;
-    if (!(std::ofstream(aside) << text).flush()) {
-        std::filesystem::remove(aside, error);
-        throw RuntimeError("{}: cannot be written", path);
+Metadata make_metadata(const json& parameters, const json& stats) {
+    Metadata metadata = {{"Software", "manylight " MANYLIGHT_VERSION},
+                         {"manylight:version", MANYLIGHT_VERSION},
+                         {"manylight:device", stats["device"].get<std::string>()},
+                         {"manylight:seconds", stats["seconds"]["total"].get<float>()}};
+    for (const auto& [key, value] : parameters.items()) {
+        const std::string name = "manylight:" + key;
+        if (value.is_string())
+            metadata[name] = value.get<std::string>();
+        else if (value.is_number_float())
+            metadata[name] = value.get<float>();
+        else  // integers as text: a seed may not fit a signed one
+            metadata[name] = value.dump();
     }
-    std::filesystem::rename(aside, path, error);
-    if (error) throw RuntimeError("{}: cannot be written: {}", path, error.message());
+    return metadata;
 }
 
-std::vector<std::string> outputs_of(const RenderArguments& arguments) {
-    if (!arguments.outputs.empty()) return arguments.outputs;
-    return {std::filesystem::path(arguments.scene.file).stem().string() + ".png"};
+void warn_if_not_finite(const Image& image) {
+    const auto bad = std::ranges::count_if(image.values, [](float v) { return !std::isfinite(v); });
+    if (bad > 0) fmt::print(stderr, "warning: {} pixel values are not finite numbers\n", bad);
 }
 
-}  // namespace
-
-int run_render(const RenderArguments& arguments) {
-    const auto start = Clock::now();
-    const std::vector<std::string> outputs = outputs_of(arguments);
-    for (const std::string& path : outputs) check_output(path);
-    if (!arguments.cluster_map.empty()) check_output(arguments.cluster_map);
-    RenderOptions options = arguments.options;
-    const bool in_exr = std::ranges::any_of(outputs, [](auto& o) { return o.ends_with(".exr"); });
-    if (!options.aovs.empty() && !in_exr)
-        throw InputError("--aov: layers go to an .exr file; give one with --output");
-    if (!arguments.cluster_map.empty())
-        for (const char* name : {"cluster", "representative"}) options.aovs.emplace_back(name);
-
-    const LoadedScene loaded = load(arguments.scene);
-    const double load_seconds = seconds_since(start);
-    Device device = Device::open(arguments.scene.device, arguments.scene.threads);
-    const auto build_start = Clock::now();
-    const unsigned lanes = lanes_for(device.info());
-    const WideBvh bvh =
-        build_wide_bvh(loaded.scene, lanes, lanes, reach_of(loaded.scene, loaded.camera));
-    const double build_seconds = seconds_since(build_start);
-    options.width = loaded.width;
-    options.height = loaded.height;
-    Frame frame(device, loaded.scene, bvh, loaded.camera, options);
-    if (!arguments.quiet) print_plan(loaded, frame.plan(), device.info());
-    frame.prepare();
-    FrameResult result = [&] {
-        Progress progress("rendering", arguments.quiet);
-        return frame.render(progress);
-    }();
-
-    nlohmann::json stats = make_stats(options, loaded, frame.plan(), result, device);
-    stats["seconds"]["load"] = load_seconds;
-    stats["seconds"]["build"] = build_seconds;
-    stats["seconds"]["total"] = seconds_since(start);
-    const Metadata metadata = make_metadata(stats);
+void write_files(const RenderArguments& arguments, const std::vector<std::string>& images,
+                 const FrameResult& result, const json& stats, const Metadata& metadata) {
     const float exposure =
         arguments.exposure ? std::exp2(*arguments.exposure) : auto_exposure(result.image);
     std::vector<Image> layers = {result.image};
     for (const auto& [name, image] : result.aovs)
         if (std::ranges::count(arguments.options.aovs, name)) layers.push_back(image);
-    for (const std::string& path : outputs) {
+    for (const std::string& path : images) {
         if (path.ends_with(".exr"))
             write_exr(path, layers, metadata);
         else
@@ -146,13 +148,63 @@ int run_render(const RenderArguments& arguments) {
     if (!arguments.cluster_map.empty())
         write_png(arguments.cluster_map, draw_cluster_map(result.image, exposure, result.aovs), 1,
                   metadata);
-    if (!arguments.stats.empty()) write_text(arguments.stats, stats.dump(2) + "\n");
+    if (!arguments.stats.empty()) {
+        const std::string text = stats.dump(2, ' ', false, json::error_handler_t::replace) + "\n";
+        write_file(arguments.stats, std::as_bytes(std::span(text)));
+    }
+}
+
+}  // namespace
+
+int run_render(const RenderArguments& arguments) {
+    const auto start = Clock::now();
+    std::vector<std::string> images = arguments.outputs;
+    if (images.empty()) images = {fs::path(arguments.scene.file).stem().string() + ".png"};
+    check_files(arguments, images);
+    RenderOptions options = arguments.options;
+    if (!options.aovs.empty() &&
+        std::ranges::none_of(images, [](const std::string& i) { return i.ends_with(".exr"); }))
+        throw InputError("--aov {}: layers go to an .exr file; name one with --output",
+                         options.aovs[0]);
+    if (!arguments.cluster_map.empty()) {
+        if (find_sampler(options.sampler).table != Table::clusters)
+            throw InputError("--cluster-map {}: sampler {} makes no clusters",
+                             arguments.cluster_map, options.sampler);
+        for (const char* name : {"cluster", "representative"}) options.aovs.emplace_back(name);
+    }
+
+    const LoadedScene loaded = load(arguments.scene);
+    const double load_seconds = seconds_since(start);
+    options.width = loaded.width;
+    options.height = loaded.height;
+    Device device = Device::open(arguments.scene.device, arguments.scene.threads);
+    const auto build_start = Clock::now();
+    const unsigned lanes = lanes_for(device.info());
+    const WideBvh bvh =
+        build_wide_bvh(loaded.scene, lanes, lanes, reach_of(loaded.scene, loaded.camera));
+    const double build_seconds = seconds_since(build_start);
+    Frame frame(device, loaded.scene, bvh, loaded.camera, options);
+    if (!arguments.quiet) print_plan(loaded, frame.plan(), device.info());
+    frame.prepare();
+    FrameResult result = [&] {
+        Progress progress("rendering", arguments.quiet);
+        return frame.render(progress);
+    }();
+    warn_if_not_finite(result.image);
+
+    const json parameters = make_parameters(options, loaded, result.light_samples);
+    json stats = make_stats(parameters, loaded, frame.plan(), result, device);
+    stats["seconds"]["load"] = load_seconds;
+    stats["seconds"]["build"] = build_seconds;
+    stats["seconds"]["total"] = seconds_since(start);
+    write_files(arguments, images, result, stats, make_metadata(parameters, stats));
     if (!arguments.quiet) {
         fmt::print(
             "{}, {} light samples, {} spp, {} x {}: {:.2f} s (prepare {:.2f}, render {:.2f})\n",
-            options.sampler, options.light_samples, options.spp, options.width, options.height,
+            options.sampler, result.light_samples, options.spp, options.width, options.height,
             seconds_since(start), result.prepare_seconds, result.render_seconds);
-        for (const std::string& path : outputs) fmt::print("wrote {}\n", path);
+        for (const auto& [option, path] : files_of(arguments, images))
+            fmt::print("wrote {}\n", path);
     }
     return 0;
 }

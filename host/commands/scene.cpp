@@ -4,14 +4,14 @@
 #include <filesystem>
 
 #include "commands/commands.hpp"
-#include "error.hpp"
+#include "output/write_file.hpp"
 #include "scene/builtin/builtin.hpp"
 
 namespace manylight {
 
 int run_scene(const BuiltinArguments& arguments) {
-    if (!arguments.output.ends_with(".glb"))
-        throw InputError("--output {}: the name must end in .glb", arguments.output);
+    const std::string ending = ".glb";
+    check_output("--output", arguments.output, {&ending, 1});
     make_builtin(arguments.name, {arguments.lights, arguments.mesh}).write(arguments.output);
     fmt::print("wrote {} ({} KiB)\n", arguments.output,
                std::filesystem::file_size(arguments.output) >> 10);

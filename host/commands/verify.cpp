@@ -11,10 +11,16 @@ namespace {
 
 void print(const Check& c) {
     fmt::print("{:<32} {:>8} {:>10} {:>10.3g}  {:<6} {}\n", c.stage, c.items, c.borderline,
-               c.largest, c.passed() ? "pass" : "FAIL", c.tolerance);
+               c.largest,
+               !c.passed()  ? "FAIL"
+               : c.tested() ? "pass"
+                            : "-",
+               c.tolerance);
     if (c.failed > 0)
         fmt::print("    {} of {} items differ; the first: {}\n", c.failed, c.items,
                    c.first_failure);
+    else if (c.passed() && !c.tested())
+        fmt::print("    this scene does not test it\n");
     else if (!c.passed())
         fmt::print("    {} of {} items are borderline: too many\n", c.borderline, c.items);
 }

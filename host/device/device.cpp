@@ -4,8 +4,7 @@
 #include <sched.h>
 
 #include <cstdlib>
-#include <filesystem>
-#include <fstream>
+#include <map>
 
 #include "device/context.hpp"
 #include "error.hpp"
@@ -29,37 +28,27 @@ void limit_threads(unsigned threads) {
         throw InputError("--threads {}: only {} processors are available", threads, threads - left);
     sched_setaffinity(0, sizeof(kept), &kept);
     // PoCL starts a thread per processor of the machine, whatever the affinity.
-    setenv("POCL_MAX_PTHREAD_COUNT", std::to_string(threads).c_str(), 0);
-}
-
-// PoCL's builds fail with an unhelpful message where its kernel cache cannot be written.
-void check_pocl_cache() {
-    namespace fs = std::filesystem;
-    const auto variable = [](const char* name) {
-        const char* value = std::getenv(name);
-        return std::string(value ? value : "");
-    };
-    fs::path folder = variable("POCL_CACHE_DIR");
-    if (folder.empty() && !variable("XDG_CACHE_HOME").empty())
-        folder = fs::path(variable("XDG_CACHE_HOME")) / "pocl/kcache";
-    if (folder.empty() && !variable("HOME").empty())
-        folder = fs::path(variable("HOME")) / ".cache/pocl/kcache";
-    if (folder.empty()) return;  // PoCL then uses a folder of its own in /tmp
-    std::error_code error;
-    fs::create_directories(folder, error);
-    const fs::path probe = folder / fmt::format("manylight-{}", getpid());
-    const bool writable = !error && std::ofstream(probe).put('\n').flush().good();
-    fs::remove(probe, error);
-    if (!writable)
-        throw RuntimeError(
-            "PoCL's kernel cache {} cannot be written; set POCL_CACHE_DIR to a folder that can",
-            folder.string());
+    setenv("POCL_MAX_PTHREAD_COUNT", std::to_string(threads).c_str(), 1);
 }
 
 }  // namespace
 
 std::string describe(const cl::Error& error) {
-    return fmt::format("{} failed with OpenCL error {}", error.what(), error.err());
+    const std::map<cl_int, const char*> words = {
+        {CL_DEVICE_NOT_AVAILABLE, "device not available"},
+        {CL_COMPILER_NOT_AVAILABLE, "no compiler"},
+        {CL_MEM_OBJECT_ALLOCATION_FAILURE, "out of device memory"},
+        {CL_OUT_OF_RESOURCES, "out of resources"},
+        {CL_OUT_OF_HOST_MEMORY, "out of host memory"},
+        {CL_BUILD_PROGRAM_FAILURE, "build failure"},
+        {CL_INVALID_BUFFER_SIZE, "buffer too large"},
+        {CL_INVALID_WORK_GROUP_SIZE, "work-group too large"},
+        {CL_INVALID_ARG_SIZE, "argument of the wrong size"},
+    };
+    const auto known = words.find(error.err());
+    return fmt::format("{} failed: {} (OpenCL error {})", error.what(),
+                       known == words.end() ? "see the OpenCL headers" : known->second,
+                       error.err());
 }
 
 DeviceMemory::Allocation::~Allocation() { context->allocated -= bytes; }
@@ -87,9 +76,13 @@ void DeviceMemory::read(void* destination, std::size_t bytes, std::size_t offset
 }
 
 void DeviceMemory::clear() {
-    if (!allocation_) return;
-    allocation_->context->queue.enqueueFillBuffer(allocation_->buffer, cl_uchar{0}, 0,
-                                                  allocation_->bytes);
+    if (bytes() == 0) return;
+    try {
+        allocation_->context->queue.enqueueFillBuffer(allocation_->buffer, cl_uchar{0}, 0,
+                                                      allocation_->bytes);
+    } catch (const cl::Error& error) {
+        throw RuntimeError("{}: {}", allocation_->context->info.name, describe(error));
+    }
 }
 
 Device Device::open(std::string_view selector, unsigned threads) {
@@ -99,7 +92,6 @@ Device Device::open(std::string_view selector, unsigned threads) {
     device.context_ = std::make_shared<Context>();
     Context& context = *device.context_;
     context.info = list_devices()[index];
-    if (context.info.platform == "Portable Computing Language") check_pocl_cache();
     try {
         context.device = all_devices()[index];
         context.context = cl::Context(context.device);
@@ -122,8 +114,8 @@ DeviceMemory Device::allocate_bytes(std::size_t bytes) {
         allocation.buffer = cl::Buffer(context_->context, CL_MEM_READ_WRITE,
                                        std::max<std::size_t>(bytes, sizeof(cl_float16)));
     } catch (const cl::Error& error) {
-        throw RuntimeError("{}: cannot allocate {} bytes (OpenCL error {}); see --memory",
-                           context_->info.name, bytes, error.err());
+        throw RuntimeError("{}: cannot allocate {} bytes: {}", context_->info.name, bytes,
+                           describe(error));
     }
     allocation.bytes = bytes;
     context_->allocated += bytes;

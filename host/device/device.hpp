@@ -27,15 +27,15 @@ struct DeviceInfo {
     std::uint64_t global_memory = 0;   // bytes
     std::uint64_t max_allocation = 0;  // bytes, of one buffer
     unsigned float_width = 1;          // native vector width, lanes
-    bool usable = false;               // available, with a compiler, little-endian, OpenCL >= 1.2
+    bool usable = false;               // OpenCL 1.2, a compiler, little-endian, groups large enough
 };
 
 /// Every OpenCL device of every platform, in the loader's order.
 [[nodiscard]] std::vector<DeviceInfo> list_devices();
 
-/// The position in list_devices() that `selector` means: a number, or part of a platform's or
-/// device's name in any case; empty: a GPU if there is one, otherwise PoCL, otherwise the first.
-/// Throws InputError if that is no usable device.
+/// The position in list_devices() that `selector` means: a number, or part of the name or version
+/// of its platform, or else of its own name, in any case; empty: a GPU if there is one, otherwise
+/// PoCL, otherwise the first. Throws InputError if that is no usable device or more than one.
 [[nodiscard]] std::size_t select_device(std::string_view selector);
 
 /// Bytes on a device; copies share them. Freed with the last copy.

@@ -1,11 +1,19 @@
 // SPDX-License-Identifier: MIT
+#include <unistd.h>
+
 #include <algorithm>
+#include <cctype>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
 
 #include "device/context.hpp"
 #include "error.hpp"
 
 namespace manylight {
 namespace {
+
+constexpr const char* pocl = "Portable Computing Language";
 
 std::string trimmed(std::string text) {
     while (!text.empty() && (text.back() == '\0' || text.back() == ' ')) text.pop_back();
@@ -33,8 +41,50 @@ DeviceInfo describe_device(const cl::Device& device) {
     info.usable =
         device.getInfo<CL_DEVICE_AVAILABLE>() && device.getInfo<CL_DEVICE_COMPILER_AVAILABLE>() &&
         device.getInfo<CL_DEVICE_ENDIAN_LITTLE>() && !info.version.starts_with("OpenCL 1.0") &&
-        !info.version.starts_with("OpenCL 1.1");
+        !info.version.starts_with("OpenCL 1.1") &&
+        device.getInfo<CL_DEVICE_MAX_WORK_GROUP_SIZE>() >= local_size_of(info);
     return info;
+}
+
+// PoCL lists no device where its kernel cache cannot be made, and fails to build with an unhelpful
+// message where it cannot be written.
+void check_pocl_cache() {
+    namespace fs = std::filesystem;
+    const auto variable = [](const char* name) {
+        const char* value = std::getenv(name);
+        return std::string(value ? value : "");
+    };
+    fs::path folder = variable("POCL_CACHE_DIR");
+    if (folder.empty() && !variable("XDG_CACHE_HOME").empty())
+        folder = fs::path(variable("XDG_CACHE_HOME")) / "pocl/kcache";
+    if (folder.empty() && !variable("HOME").empty())
+        folder = fs::path(variable("HOME")) / ".cache/pocl/kcache";
+    if (folder.empty()) return;  // PoCL then uses a folder of its own in /tmp
+    std::error_code error;
+    fs::create_directories(folder, error);
+    const fs::path probe = folder / fmt::format("manylight-{}", getpid());
+    const bool writable = !error && std::ofstream(probe).put('\n').flush().good();
+    fs::remove(probe, error);
+    if (!writable)
+        throw RuntimeError(
+            "PoCL's kernel cache {} cannot be written; set POCL_CACHE_DIR to a folder that can",
+            folder.string());
+}
+
+bool contains(const std::string& text, std::string_view part) {
+    return lower(text).find(lower(std::string(part))) != std::string::npos;
+}
+
+// The devices whose platform or version, or else whose name, holds the words.
+std::vector<std::size_t> matching(const std::vector<DeviceInfo>& devices, std::string_view words) {
+    std::vector<std::size_t> by_platform;
+    std::vector<std::size_t> by_name;
+    for (std::size_t i = 0; i < devices.size(); ++i) {
+        if (contains(devices[i].platform + " " + devices[i].version, words))
+            by_platform.push_back(i);
+        if (contains(devices[i].name, words)) by_name.push_back(i);
+    }
+    return by_platform.empty() ? by_name : by_platform;
 }
 
 std::size_t default_device(const std::vector<DeviceInfo>& devices) {
@@ -84,17 +134,19 @@ std::size_t select_device(std::string_view selector) {
     std::size_t index = devices.size();
     if (selector.empty()) {
         index = default_device(devices);
-        if (index == devices.size())
+        if (index == devices.size()) {
+            check_pocl_cache();
             throw RuntimeError(
                 "no usable OpenCL device: install a driver, such as Debian's pocl-opencl-icd");
+        }
     } else if (std::ranges::all_of(selector, [](unsigned char c) { return std::isdigit(c); })) {
         index = selector.size() < 6 ? std::stoul(std::string(selector)) : devices.size();
     } else {
-        const std::string wanted = lower(std::string(selector));
-        for (index = 0; index < devices.size(); ++index)
-            if (lower(devices[index].platform + " " + devices[index].name).find(wanted) !=
-                std::string::npos)
-                break;
+        const std::vector<std::size_t> found = matching(devices, selector);
+        if (found.size() > 1)
+            throw InputError("--device {}: devices {} match: give one's number", selector,
+                             fmt::join(found, " and "));
+        if (!found.empty()) index = found.front();
     }
     if (index >= devices.size())
         throw InputError("--device {}: no such device ('manylight devices' lists the {} there are)",
@@ -102,6 +154,7 @@ std::size_t select_device(std::string_view selector) {
     if (!devices[index].usable)
         throw InputError("--device {}: {} cannot be used (needs OpenCL 1.2 and a compiler)",
                          selector, devices[index].name);
+    if (devices[index].platform == pocl) check_pocl_cache();
     return index;
 }
 

@@ -1,66 +1,47 @@
 // SPDX-License-Identifier: MIT
 #include "output/image.hpp"
 
-#include <OpenImageIO/imagebuf.h>
-#include <OpenImageIO/imagebufalgo.h>
+#include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
 
 #include "error.hpp"
+#include "output/write_file.hpp"
 
 namespace manylight {
 namespace {
-
-namespace fs = std::filesystem;
 
 void set_metadata(OIIO::ImageSpec& spec, const Metadata& metadata) {
     for (const auto& [name, value] : metadata)
         std::visit([&, &key = name](const auto& v) { spec.attribute(key, v); }, value);
 }
 
-// Writes to a name of its own in the same folder and renames: the old file stays whole until the
-// new one is.
-void write_aside(const std::string& path, const OIIO::ImageSpec& spec, OIIO::TypeDesc type,
-                 const void* pixels) {
-    const fs::path target(path);
-    const fs::path aside =
-        target.parent_path() /
-        fmt::format(".{}-{}{}", target.stem().string(), getpid(), target.extension().string());
-    std::string problem;
-    const std::unique_ptr<OIIO::ImageOutput> out = OIIO::ImageOutput::create(aside.string());
-    if (!out || !out->open(aside.string(), spec) || !out->write_image(type, pixels) ||
+// Encodes in memory: a writer that meets a full disk may not say so, write_file() does.
+void encode_and_write(const std::string& path, const OIIO::ImageSpec& spec, OIIO::TypeDesc type,
+                      const void* pixels) {
+    std::vector<unsigned char> bytes;
+    OIIO::Filesystem::IOVecOutput proxy(bytes);
+    const std::unique_ptr<OIIO::ImageOutput> out = OIIO::ImageOutput::create(path);
+    if (!out) throw RuntimeError("{}: cannot be encoded: {}", path, OIIO::geterror());
+    if (!out->set_ioproxy(&proxy) || !out->open(path, spec) || !out->write_image(type, pixels) ||
         !out->close())
-        problem = out && out->has_error() ? out->geterror() : OIIO::geterror();
-    std::error_code error;
-    if (problem.empty() && fs::file_size(aside, error) > 0 && !error) {
-        fs::rename(aside, target, error);
-        if (!error) return;
-    }
-    if (problem.empty()) problem = error ? error.message() : "the file stays empty";
-    fs::remove(aside, error);
-    throw RuntimeError("{}: cannot be written: {}", path, problem);
+        throw RuntimeError("{}: cannot be encoded: {}", path, out->geterror());
+    write_file(path, std::as_bytes(std::span(bytes)));
+}
+
+// IEC 61966-2-1.
+float srgb_from_linear(float linear) {
+    return linear <= 0.0031308f ? 12.92f * linear : 1.055f * std::pow(linear, 1 / 2.4f) - 0.055f;
+}
+
+float linear_from_srgb(float code) {
+    return code <= 0.04045f ? code / 12.92f : std::pow((code + 0.055f) / 1.055f, 2.4f);
 }
 
 }  // namespace
-
-void check_output(const std::string& path) {
-    const fs::path target(path);
-    std::string extension = target.extension().string();
-    if (extension != ".exr" && extension != ".png")
-        throw InputError("--output {}: the name must end in .exr or .png", path);
-    const fs::path folder = target.has_parent_path() ? target.parent_path() : fs::path(".");
-    std::error_code error;
-    if (!fs::is_directory(folder, error))
-        throw InputError("--output {}: there is no folder {}", path, folder.string());
-    if (access(folder.c_str(), W_OK) != 0)
-        throw InputError("--output {}: the folder {} cannot be written", path, folder.string());
-    if (fs::exists(target, error) && !fs::is_regular_file(target, error))
-        throw InputError("--output {}: is there and not a regular file", path);
-}
 
 void write_exr(const std::string& path, const std::vector<Image>& layers,
                const Metadata& metadata) {
@@ -82,7 +63,7 @@ void write_exr(const std::string& path, const std::vector<Image>& layers,
     }
     spec.attribute("compression", "zip");
     set_metadata(spec, metadata);
-    write_aside(path, spec, OIIO::TypeDesc::FLOAT, pixels.data());
+    encode_and_write(path, spec, OIIO::TypeDesc::FLOAT, pixels.data());
 }
 
 void write_png(const std::string& path, const Image& image, float scale, const Metadata& metadata) {
@@ -93,14 +74,13 @@ void write_png(const std::string& path, const Image& image, float scale, const M
     std::vector<unsigned char> pixels(image.pixel_count() * 3);
     for (std::size_t i = 0; i < image.pixel_count(); ++i)
         for (std::size_t c = 0; c < 3; ++c) {
-            const float linear =
-                std::clamp(image.values[i * image.channels.size() + c] * scale, 0.0f, 1.0f);
-            const float encoded = linear <= 0.0031308f
-                                      ? 12.92f * linear
-                                      : 1.055f * std::pow(linear, 1 / 2.4f) - 0.055f;
-            pixels[3 * i + c] = static_cast<unsigned char>(std::lround(255 * encoded));
+            const float value = image.values[i * image.channels.size() + c] * scale;
+            // NaN compares false: black.
+            const float linear = value > 0 ? std::min(value, 1.0f) : 0.0f;
+            pixels[3 * i + c] =
+                static_cast<unsigned char>(std::lround(255 * srgb_from_linear(linear)));
         }
-    write_aside(path, spec, OIIO::TypeDesc::UINT8, pixels.data());
+    encode_and_write(path, spec, OIIO::TypeDesc::UINT8, pixels.data());
 }
 
 float auto_exposure(const Image& image) {
@@ -130,6 +110,9 @@ Image read_rgb(const std::string& path) {
         if (channel < 0) throw InputError("{}: has no channel {}", path, image.channels[c]);
         for (std::size_t i = 0; i < image.pixel_count(); ++i)
             image.values[3 * i + c] = pixels[i * spec.nchannels + channel];
+    }
+    if (!spec.format.is_floating_point()) {  // codes for a screen
+        for (float& value : image.values) value = linear_from_srgb(value);
     }
     return image;
 }

@@ -36,11 +36,8 @@ struct Image {
 /// Facts for a file's header.
 using Metadata = std::map<std::string, std::variant<int, float, std::string>>;
 
-/// Throws InputError unless `path` ends in .exr or .png, its folder exists and can be written.
-void check_output(const std::string& path);
-
-/// Writes layers side by side to an OpenEXR file of 32-bit floats, aside first and then renamed, so
-/// that a file of that name is replaced whole or not at all. Throws RuntimeError.
+/// Writes layers side by side to an OpenEXR file of 32-bit floats (see write_file). Throws
+/// RuntimeError.
 void write_exr(const std::string& path, const std::vector<Image>& layers, const Metadata& metadata);
 
 /// Writes the first three channels, times `scale`, as an 8-bit sRGB PNG, in the same way.
@@ -49,7 +46,8 @@ void write_png(const std::string& path, const Image& image, float scale, const M
 /// The scale that brings the 90th percentile of the luminances of `image` that are not 0 to 0.7.
 [[nodiscard]] float auto_exposure(const Image& image);
 
-/// The channels R, G, B of an image file, as floats. Throws InputError.
+/// The channels R, G, B of an image file, linear: integers are taken for sRGB codes. Throws
+/// InputError.
 [[nodiscard]] Image read_rgb(const std::string& path);
 
 }  // namespace manylight

@@ -77,8 +77,8 @@ void Clustering::refine(const Tiles& tiles, const Buffer<Surface>& surfaces,
                                    device_representatives_);
         contribution_stage_.evaluate(surfaces, device_representatives_, first, count, matrix_,
                                      progress);
-        refinement_stage_.split(device_regions_, matrix_.totals, first, count,
-                                options_.visibility_threshold, options_.max_depth, device_split_);
+        refinement_stage_.split(device_regions_, matrix_.totals, first, count, options_.shadow,
+                                options_.max_depth, device_split_);
         const std::vector<uint> split = device_split_.download(first, count);
         split_.insert(split_.end(), split.begin(), split.end());
         for (uint i = 0; i < count; ++i) {

@@ -14,10 +14,10 @@ namespace manylight {
 
 /// The paper's parameters; it does not give their values.
 struct ClusterOptions {
-    unsigned tile_size = 32;            // pixels, a power of two from 8 to 128; paper 4.1
-    unsigned max_depth = 3;             // of the quadtree
-    float normal_threshold = 10;        // degrees between two corners' normals
-    float visibility_threshold = 0.7f;  // share of the lights below which a cluster is in shadow
+    unsigned tile_size = 32;      // pixels, a power of two from 8 to 128; paper 4.1
+    unsigned max_depth = 3;       // of the quadtree
+    float normal_threshold = 10;  // degrees between two corners' normals
+    ShadowRule shadow;
 };
 
 /// The most regions that a tile's quadtree can come to.

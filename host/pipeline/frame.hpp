@@ -2,49 +2,16 @@
 // One frame: from a scene and options to an image. Reads as the list of stages.
 #pragma once
 
-#include <map>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "output/image.hpp"
 #include "output/progress.hpp"
-#include "pipeline/clustering.hpp"
+#include "pipeline/plan.hpp"
 #include "scene/scene.hpp"
 
 namespace manylight {
-
-struct RenderOptions {
-    std::string sampler = "contribution-defensive";
-    uint light_samples = 4;  // per pixel sample; ignored by exhaustive
-    uint spp = 4;            // pixel samples
-    uint seed = 0;
-    unsigned width = 512;
-    unsigned height = 512;
-    bool pixel_centre = false;  // all pixel samples at the pixel's centre; always with spp 1
-    ClusterOptions clusters;
-    std::size_t memory = 0;  // bytes on the device; 0: half of it, at most 2 GiB
-    std::vector<std::string> aovs;
-};
-
-/// A layer of extra values that a frame can give.
-struct Aov {
-    std::string_view name;
-    std::vector<std::string> channels;  // their names in the file
-    bool needs_clusters;
-    std::string_view summary;
-};
-[[nodiscard]] const std::vector<Aov>& all_aovs();
-
-/// What a frame will take on the device.
-struct Plan {
-    std::size_t scene_bytes = 0;
-    std::size_t image_bytes = 0;
-    std::size_t batch_bytes = 0;   // of everything that is kept for a batch of tiles
-    std::size_t matrix_bytes = 0;  // the contribution matrix's part of batch_bytes
-    unsigned batches = 0;
-    unsigned tiles_per_batch = 0;
-};
 
 /// What a frame took and gave.
 struct FrameResult {
@@ -53,14 +20,15 @@ struct FrameResult {
     std::size_t clusters = 0;
     std::size_t primary_rays = 0;
     std::size_t shadow_rays = 0;
-    double prepare_seconds = 0;  // clusters, contributions, PDFs
-    double render_seconds = 0;   // the rest
+    uint light_samples = 0;      // per pixel sample
+    double prepare_seconds = 0;  // clusters, contributions, PDFs; compiling apart
+    double render_seconds = 0;   // the rest, likewise
 };
 
-/// A run of tiles that is rendered at a time, on the device.
+/// Renders a scene, batch by batch of its image's tiles. Keeps references to scene and BVH.
 class Frame {
   public:
-    /// Plans the frame. Throws InputError where options or memory will not do.
+    /// Plans the frame (see make_plan).
     Frame(const Device& device, const Scene& scene, const WideBvh& bvh, const Camera& camera,
           const RenderOptions& options);
 
@@ -69,15 +37,17 @@ class Frame {
     /// Uploads the scene and builds the kernels.
     void prepare();
 
+    /// To be called once, after prepare().
     [[nodiscard]] FrameResult render(Progress& progress);
 
   private:
-    void cluster(const Tiles& batch, const Buffer<Surface>& surfaces, Progress& progress);
-    void keep_aovs(const Tiles& batch, const Buffer<Surface>& surfaces);
+    [[nodiscard]] Buffer<float4> allocate_zeros(std::size_t count);
+    void cluster(const Tiles& batch, Progress& progress);
+    void keep_aovs(const Tiles& batch);
     void sample(const Tiles& batch, Progress& progress);
-    [[nodiscard]] bool uses_clusters() const;
-    [[nodiscard]] uint light_samples() const;
-    [[nodiscard]] Mixture mixture() const;
+    void keep_image();
+    [[nodiscard]] double cluster_work(const Tiles& batch) const;
+    void report(Progress& progress, const Tiles& batch, double work) const;
 
     struct Stages;
     Device device_;
@@ -86,8 +56,9 @@ class Frame {
     Camera camera_;
     RenderOptions options_;
     const Sampler& sampler_;
-    bool jitter_;
     Plan plan_;
+    uint light_samples_;
+    std::size_t clusters_before_ = 0;  // the batch in work
     std::shared_ptr<Stages> stages_;
     FrameResult result_;
 };

@@ -6,14 +6,14 @@
 
 namespace manylight::reference {
 
-/// Stage accumulate: a pixel's sum after one more sample.
-[[nodiscard]] inline float4 accumulated(float4 sum, const Surface& surface, const float4& estimate,
-                                        const Scene& scene) {
-    sum += estimate;
-    if (surface.position.w < 0) return sum;
+/// Stage accumulate: what one sample adds to its pixel's sum.
+[[nodiscard]] inline glm::dvec4 pixel_sample_value(const Surface& surface, const float4& estimate,
+                                                   const Scene& scene) {
+    glm::dvec4 value(estimate);
+    if (surface.position.w < 0) return value;
     const float4& emission = scene.materials[surface.material].emission;
-    if (surface.front || emission.w != 0) sum += float4(glm::vec3(emission), 0);
-    return sum;
+    if (surface.front || emission.w != 0) value += glm::dvec4(glm::vec3(emission), 0);
+    return value;
 }
 
 }  // namespace manylight::reference

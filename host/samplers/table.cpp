@@ -32,6 +32,7 @@ constexpr Sampler samplers[] = {
     {.name = "contribution-defensive",
      .summary = "the paper's, mixed with unshadowed contribution and power",
      .table = Table::clusters,
+     .weighs_shadow = true,
      .shares = {.visible = 0.4f, .unshadowed = 0.5f, .power = 0.1f},
      .kernel_file = "samplers/contribution.cl",
      .choose_light = reference::choose_contribution},
@@ -40,6 +41,13 @@ constexpr Sampler samplers[] = {
 }  // namespace
 
 std::span<const Sampler> all_samplers() { return samplers; }
+
+Mixture mixture_of(const Sampler& sampler, const std::vector<Light>& lights) {
+    double power = 0;
+    for (const Light& light : lights) power += light.emission.w;
+    return {sampler.shares.visible, sampler.shares.unshadowed, sampler.shares.power,
+            static_cast<float>(power)};
+}
 
 const Sampler& find_sampler(std::string_view name) {
     std::string names;

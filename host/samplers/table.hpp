@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "reference/samples.hpp"
+#include "shared/contribution.h"
 
 namespace manylight {
 
@@ -29,12 +30,16 @@ struct Sampler {
     bool biased = false;
     bool all_lights = false;  // light sample i is light i
     Table table = Table::none;
+    bool weighs_shadow = false;  // clusters: see ShadowRule
     Shares shares = {};
     std::string_view kernel_file;  // below kernels/
     reference::ChooseLight choose_light = nullptr;
 };
 
 [[nodiscard]] std::span<const Sampler> all_samplers();
+
+/// How a sampler mixes its rows, for a scene's lights.
+[[nodiscard]] Mixture mixture_of(const Sampler& sampler, const std::vector<Light>& lights);
 
 /// Throws InputError for a name that is not in the table.
 [[nodiscard]] const Sampler& find_sampler(std::string_view name);

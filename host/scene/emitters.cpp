@@ -41,40 +41,45 @@ Light area_light(const Emitter& e) {
             float4(e.edge2, e.offset), float4(e.radiance, 0)};
 }
 
-// Emission of power `power` about `normal` from the point (u, v) of an emitter.
-Light oriented_point(const Emitter& e, glm::vec2 u, glm::vec3 normal, double power) {
+// Emission of power `power` from the point (u, v) of one side of an emitter.
+Light oriented_point(const Emitter& e, glm::vec2 u, bool back, double power) {
     if (u.x + u.y > 1) u = 1.f - u;
     const glm::vec3 color = e.radiance / luminance(e.radiance);
-    return {float4(e.corner + u.x * e.edge1 + u.y * e.edge2, LIGHT_ORIENTED), float4(normal, 0),
-            float4(0, 0, 0, e.offset),
+    const glm::vec3 normal = glm::normalize(glm::cross(e.edge1, e.edge2));
+    return {float4(e.corner + u.x * e.edge1 + u.y * e.edge2, LIGHT_ORIENTED),
+            float4(back ? -normal : normal, 0), float4(0, 0, 0, e.offset),
             float4(color * static_cast<float>(power / glm::pi<double>()), 0)};
+}
+
+// Point i lies where (i + 1/2) / points of the power is reached, counting the sides of all emitters
+// in order; on a side, the points follow Roberts' R2 sequence.
+std::vector<Light> make_points(const std::vector<Emitter>& emitters, unsigned points) {
+    std::vector<Light> lights;
+    double total = 0;
+    for (const Emitter& e : emitters) total += e.power;
+    double before = 0;
+    for (const Emitter& e : emitters) {
+        const int sides = e.both_sides ? 2 : 1;
+        for (int side = 0; side < sides; ++side) {
+            before += e.power / sides;
+            for (unsigned k = 1;
+                 lights.size() < points &&
+                 (static_cast<double>(lights.size()) + 0.5) * total < before * points;
+                 ++k) {
+                const glm::dvec2 step(0.7548776662466927, 0.5698402909980532);
+                const glm::dvec2 u = glm::fract(0.5 + static_cast<double>(k) * step);
+                lights.push_back(oriented_point(e, u, side == 1, total / points));
+            }
+        }
+    }
+    return lights;
 }
 
 std::vector<Light> make_emitters(const Scene& scene, unsigned points) {
     const std::vector<Emitter> emitters = find_emitters(scene);
+    if (points > 0) return make_points(emitters, points);
     std::vector<Light> lights;
-    if (points == 0) {
-        for (const Emitter& e : emitters) lights.push_back(area_light(e));
-        return lights;
-    }
-    double total = 0;
-    for (const Emitter& e : emitters) total += e.power;
-    if (total == 0) return lights;
-    // Point i lies where (i + 1/2) / points of the power is reached; within a triangle the points
-    // follow Roberts' R2 sequence, and on emitters of two sides they take turns.
-    double before = 0;
-    std::size_t next = 0;
-    for (const Emitter& e : emitters) {
-        const glm::vec3 normal = glm::normalize(glm::cross(e.edge1, e.edge2));
-        for (unsigned k = 0; next < points && (next + 0.5) * total / points < before + e.power;
-             ++k, ++next) {
-            const glm::dvec2 u =
-                glm::fract(0.5 + (k + 1.0) * glm::dvec2(0.7548776662466927, 0.5698402909980532));
-            const bool back = e.both_sides && k % 2 == 1;
-            lights.push_back(oriented_point(e, u, back ? -normal : normal, total / points));
-        }
-        before += e.power;
-    }
+    for (const Emitter& e : emitters) lights.push_back(area_light(e));
     return lights;
 }
 

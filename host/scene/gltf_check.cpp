@@ -37,6 +37,7 @@ class Checker {
         }
         each("skins", &Checker::skin);
         each("nodes", &Checker::node);
+        each("animations", &Checker::animation);
         hierarchy();
         each("scenes", &Checker::scene);
         if (root_.has("scene")) (void)root_["scene"].index(count("scenes"), "scene");
@@ -88,7 +89,11 @@ class Checker {
     void uri(const JsonValue& value, bool must_exist) {
         const std::string text = value.string();
         if (text.starts_with("data:")) {
-            if (text.find(";base64,") == std::string::npos) value.refuse("the data is not base64");
+            const std::string head = text.substr(0, std::min(text.find(','), std::size_t{60}));
+            if (!head.ends_with(";base64")) value.refuse("'{}': the data is not base64", head);
+            if (must_exist && head != "data:application/octet-stream;base64" &&
+                head != "data:application/gltf-buffer;base64")
+                value.refuse("'{}' is no type of a buffer's data", head);
             return;
         }
         std::string path;
@@ -250,7 +255,11 @@ class Checker {
             optional_index(primitive, "material", "materials", "material");
             if (primitive.has("mode") && primitive["mode"].integer() > 6)
                 primitive["mode"].refuse("{} is no primitive mode", primitive["mode"].shown());
-            if (primitive.has("targets")) (void)primitive["targets"].array();
+            if (!primitive.has("targets")) continue;
+            const JsonValue targets = primitive["targets"].array();
+            for (std::size_t t = 0; t < targets.size(); ++t)
+                for (const std::string& name : targets.at(t).object().keys())
+                    (void)targets.at(t)[name.c_str()].index(count("accessors"), "accessor");
         }
     }
 
@@ -292,6 +301,20 @@ class Checker {
         const JsonValue joints = skin["joints"].array();
         for (std::size_t i = 0; i < joints.size(); ++i)
             (void)joints.at(i).index(count("nodes"), "node");
+        optional_index(skin, "inverseBindMatrices", "accessors", "accessor");
+        optional_index(skin, "skeleton", "nodes", "node");
+    }
+
+    void animation(const JsonValue& animation, std::size_t) {
+        const JsonValue samplers = animation["samplers"].array();
+        for (std::size_t i = 0; i < samplers.size(); ++i)
+            for (const char* key : {"input", "output"})
+                (void)samplers.at(i).object()[key].index(count("accessors"), "accessor");
+        const JsonValue channels = animation["channels"].array();
+        for (std::size_t i = 0; i < channels.size(); ++i) {
+            (void)channels.at(i).object()["sampler"].index(samplers.size(), "sampler");
+            optional_index(channels.at(i)["target"].object(), "node", "nodes", "node");
+        }
     }
 
     void node(const JsonValue& node, std::size_t) {

@@ -14,6 +14,11 @@
 namespace manylight {
 namespace {
 
+// Beyond these, sums and squares in single precision would overflow. The sun's disc has 1.6e9
+// cd/m2.
+constexpr float brightest = 1e15f;  // cd, lx or cd/m2
+constexpr float farthest = 1e9f;    // m
+
 float number(const tinygltf::Value& object, const char* key, double otherwise) {
     if (!object.IsObject() || !object.Has(key)) return static_cast<float>(otherwise);
     return static_cast<float>(object.Get(key).GetNumberAsDouble());
@@ -68,10 +73,25 @@ class Loader {
         m.roughness = std::max(roughness * roughness, SMALLEST_ALPHA);
         m.specular =
             number(extension(in.extensions, "KHR_materials_specular"), "specularFactor", 1);
-        if (!std::isfinite(glm::compMax(glm::vec3(m.emission))))
-            throw InputError("{}: materials[{}]: emissiveStrength {} is out of range", scene_.file,
-                             scene_.materials.size(), strength);
+        check_brightness(m.emission,
+                         fmt::format("materials[{}]: emission", scene_.materials.size()));
         scene_.materials.push_back(m);
+    }
+
+    void check_brightness(const glm::vec3& rgb, const std::string& where) const {
+        if (!(glm::compMax(rgb) <= brightest))
+            throw InputError("{}: {}: {} is out of range: more than {}", scene_.file, where,
+                             glm::compMax(rgb), brightest);
+    }
+
+    // The direction of a node's axis in the world, unit.
+    glm::dvec3 direction(const glm::dmat4& to_world, const glm::dvec3& axis, int node) const {
+        const glm::dvec3 d = glm::dmat3(to_world) * axis;
+        const double length = glm::length(d);
+        if (!(length > 1e-30 && length < 1e30))
+            throw InputError("{}: nodes[{}]: its transform leaves no direction (scale {})",
+                             scene_.file, node, length);
+        return d / length;
     }
 
     void visit_nodes() {
@@ -93,27 +113,35 @@ class Loader {
             const tinygltf::Node& node = model_.nodes[index];
             const glm::dmat4 to_world = parent * local_transform(node);
             for (int c = 0; c < 4; ++c)
-                for (int r = 0; r < 4; ++r)
-                    if (!std::isfinite(static_cast<float>(to_world[c][r])))
-                        throw InputError("{}: nodes[{}]: its transform is out of range",
-                                         scene_.file, index);
+                if (!(glm::compMax(glm::abs(to_world[c])) <= farthest))
+                    throw InputError(
+                        "{}: nodes[{}]: its transform is out of range: {} is more than {}",
+                        scene_.file, index, glm::compMax(glm::abs(to_world[c])), farthest);
             if (node.mesh >= 0) add_mesh(node.mesh, to_world);
-            if (node.camera >= 0) add_camera(node, to_world);
+            if (node.camera >= 0) add_camera(index, to_world);
             const auto& light = extension(node.extensions, "KHR_lights_punctual");
-            if (light.IsObject()) add_light(light.Get("light").GetNumberAsInt(), to_world);
+            if (light.IsObject()) add_light(light.Get("light").GetNumberAsInt(), index, to_world);
             for (auto child = node.children.rbegin(); child != node.children.rend(); ++child)
                 open.emplace_back(*child, to_world);
         }
     }
 
-    void add_camera(const tinygltf::Node& node, const glm::dmat4& to_world) {
+    void add_camera(int index, const glm::dmat4& to_world) {
+        const tinygltf::Node& node = model_.nodes[index];
         const tinygltf::Camera& camera = model_.cameras[node.camera];
         View view;
         view.name = !node.name.empty() ? node.name : camera.name;
         if (view.name.empty()) view.name = std::to_string(scene_.views.size());
-        glm::dmat3 axes(to_world);  // without scale: only place and direction count
-        for (int i = 0; i < 3; ++i) axes[i] = glm::normalize(axes[i]);
-        view.to_world = glm::dmat4(axes);
+        view.camera_name = camera.name;
+        // Only place and direction count: scale, shear and mirroring are left out.
+        const glm::dvec3 back = direction(to_world, {0, 0, 1}, index);
+        const glm::dvec3 right = glm::cross(direction(to_world, {0, 1, 0}, index), back);
+        if (!(glm::length(right) > 1e-6))
+            throw InputError("{}: nodes[{}]: its transform leaves no up direction", scene_.file,
+                             index);
+        view.to_world[0] = glm::dvec4(glm::normalize(right), 0);
+        view.to_world[1] = glm::dvec4(glm::cross(back, glm::normalize(right)), 0);
+        view.to_world[2] = glm::dvec4(back, 0);
         view.to_world[3] = to_world[3];
         view.orthographic = camera.type == "orthographic";
         if (view.orthographic) {
@@ -126,13 +154,16 @@ class Loader {
         scene_.views.push_back(view);
     }
 
-    void add_light(int index, const glm::dmat4& to_world) {
+    void add_light(int index, int node, const glm::dmat4& to_world) {
         const tinygltf::Light& in = model_.lights[index];
         glm::vec3 color(1);
         if (in.color.size() == 3) color = glm::vec3(in.color[0], in.color[1], in.color[2]);
         color *= static_cast<float>(in.intensity);
         if (color == glm::vec3(0)) return;
-        const glm::dvec3 shines = glm::normalize(glm::dmat3(to_world) * glm::dvec3(0, 0, -1));
+        check_brightness(color,
+                         fmt::format("KHR_lights_punctual.lights[{}]: color x intensity", index));
+        const glm::dvec3 shines =
+            in.type == "point" ? glm::dvec3(0) : direction(to_world, {0, 0, -1}, node);
         const auto position = glm::vec3(glm::dvec3(to_world[3]));
         Light light{float4(position, LIGHT_POINT), float4(glm::vec3(shines), in.range), float4(0),
                     float4(color, 0)};
@@ -190,9 +221,11 @@ class Loader {
                 normal = std::isfinite(length) && length > 0 ? normal / length : glm::dvec3(0);
             }
             scene_.vertex_normals.emplace_back(normal);
-            if (!std::isfinite(glm::compAdd(scene_.vertices.back())))
-                throw InputError("{}: {}.attributes.POSITION: vertex {} is not finite", scene_.file,
-                                 where, v);
+            if (!(glm::compMax(glm::abs(scene_.vertices.back())) <= farthest))
+                throw InputError(
+                    "{}: {}.attributes.POSITION: vertex {} is out of range in the world: more than "
+                    "{}",
+                    scene_.file, where, v, farthest);
         }
         const bool mirrored = glm::determinant(linear) < 0;  // turns the winding round
         const int material = primitive.material >= 0 ? primitive.material
@@ -310,7 +343,7 @@ class Loader {
             textured += m.pbrMetallicRoughness.baseColorTexture.index >= 0 ||
                         m.pbrMetallicRoughness.metallicRoughnessTexture.index >= 0 ||
                         m.normalTexture.index >= 0 || m.emissiveTexture.index >= 0 ||
-                        specular_texture;
+                        m.occlusionTexture.index >= 0 || specular_texture;
             transparent += m.alphaMode != "OPAQUE";
             colored_specular += specular.Has("specularColorFactor");
         }

@@ -2,17 +2,14 @@
 #define GLM_ENABLE_EXPERIMENTAL
 #include "scene/gltf_writer.hpp"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <filesystem>
-#include <fstream>
 #include <glm/gtc/matrix_transform.hpp>
 #include <glm/gtx/quaternion.hpp>
 
 #include "error.hpp"
+#include "output/write_file.hpp"
 
 namespace manylight {
 namespace {
@@ -193,26 +190,23 @@ void GltfWriter::write(const std::string& path) const {
     const std::uint64_t length = 28 + text.size() + binary.size();
     if (length > 0xffffffffu) throw RuntimeError("{}: a .glb file has at most 4 GiB", path);
 
-    const std::string aside = fmt::format("{}.{}.part", path, getpid());
-    std::ofstream out(aside, std::ios::binary);
-    const auto word = [&out](std::uint64_t value) {
-        const auto w = static_cast<std::uint32_t>(value);
-        out.write(reinterpret_cast<const char*>(&w), 4);
+    std::string bytes;
+    const auto append = [&bytes](const void* data, std::size_t size) {
+        bytes.append(static_cast<const char*>(data), size);
     };
-    for (const std::uint64_t w : {std::uint64_t{0x46546c67}, std::uint64_t{2}, length}) word(w);
+    const auto word = [&append](std::size_t value) {
+        const auto w = static_cast<std::uint32_t>(value);
+        append(&w, 4);
+    };
+    for (const std::size_t w : {std::size_t{0x46546c67}, std::size_t{2}, std::size_t{length}})
+        word(w);
     word(text.size());
     word(0x4e4f534a);
-    out.write(text.data(), static_cast<std::streamsize>(text.size()));
+    append(text.data(), text.size());
     word(binary.size());
     word(0x004e4942);
-    out.write(binary.data(), static_cast<std::streamsize>(binary.size()));
-    out.close();
-    std::error_code error;
-    if (out) std::filesystem::rename(aside, path, error);
-    if (!out || error) {
-        std::filesystem::remove(aside, error);
-        throw RuntimeError("{}: cannot be written", path);
-    }
+    append(binary.data(), binary.size());
+    write_file(path, std::as_bytes(std::span(bytes)));
 }
 
 }  // namespace manylight

@@ -48,7 +48,7 @@ class GltfWriter {
     /// The number of oriented points that the emitters are meant to be rendered with.
     void set_emitter_points(unsigned points);
 
-    /// Writes aside and renames. Throws RuntimeError.
+    /// See write_file(). Throws RuntimeError.
     void write(const std::string& path) const;
 
   private:

@@ -49,7 +49,7 @@ View find_view(const Scene& scene, const std::string& name) {
     if (name.empty()) return scene.views.empty() ? frame_all(scene.bounds()) : scene.views.front();
     std::string names;
     for (const View& view : scene.views) {
-        if (view.name == name) return view;
+        if (view.name == name || view.camera_name == name) return view;
         names += fmt::format("{}'{}'", names.empty() ? "" : ", ", view.name);
     }
     throw InputError("{}: --camera {}: no such camera (there are: {})", scene.file, name,

@@ -17,7 +17,8 @@ namespace manylight {
 
 /// A camera as the file describes it, or as the scene was framed.
 struct View {
-    std::string name;
+    std::string name;          // the node's, or else the camera's, or else its number
+    std::string camera_name;   // the camera's own
     glm::dmat4 to_world{1.0};  // rigid; looks along its -z
     bool orthographic = false;
     double aspect = 0;       // width / height; 0 where the file leaves it to the image

@@ -7,14 +7,20 @@
 
 namespace manylight {
 
+/// The image's sums over pixel samples, [y * width + x]: rgb, radiance, cd/m2; w, shadow rays.
+struct ImageSum {
+    Buffer<float4> sums;
+    Buffer<float4> residuals;  // of the sums, see kernels/lib/sum.h
+};
+
 /// Stage accumulate: pixel samples to the image.
 class AccumulateStage {
   public:
     AccumulateStage(Device& device, const DeviceScene& scene);
 
-    /// image[y * width + x] += estimates[item], with what the surface emits to the camera in rgb.
+    /// Adds estimates[item], and to rgb what the surface emits to the camera.
     void add(const Tiles& tiles, const Buffer<Surface>& surfaces, const Buffer<float4>& estimates,
-             Buffer<float4>& image);
+             ImageSum& image);
 
   private:
     Arguments scene_;

@@ -4,7 +4,9 @@
 namespace manylight {
 
 PdfStage::PdfStage(Device& device, const DeviceScene& scene)
-    : scene_(scene.arguments),
+    : device_(device),
+      light_count_(scene.light_count),
+      scene_(scene.arguments),
       quantise_(device.kernel("pdf.cl", "pdf_quantise", {}, "pdf")),
       scan_(device.kernel("pdf.cl", "pdf_scan", {}, "pdf")),
       add_(device.kernel("pdf.cl", "pdf_add", {}, "pdf")) {}
@@ -22,6 +24,14 @@ void PdfStage::normalise(uint count, const Mixture& mixture, Matrix& matrix) {
     if (chunks == 1) return;
     scan_.launch(count, arguments);
     add_.launch(std::size_t{count} * chunks, arguments);
+}
+
+Buffer<uint> PdfStage::of_powers(const Mixture& mixture) {
+    Matrix row(device_, 1, light_count_);
+    row.values.clear();
+    row.totals.clear();
+    normalise(1, mixture, row);
+    return row.values;
 }
 
 }  // namespace manylight

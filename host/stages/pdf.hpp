@@ -15,7 +15,12 @@ class PdfStage {
     /// the integer widths of lights 0 to `light`.
     void normalise(uint count, const Mixture& mixture, Matrix& matrix);
 
+    /// One row from the lights' powers alone: power_cdf[light].
+    [[nodiscard]] Buffer<uint> of_powers(const Mixture& mixture);
+
   private:
+    Device device_;
+    uint light_count_;
     Arguments scene_;
     Kernel quantise_;
     Kernel scan_;

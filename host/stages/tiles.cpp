@@ -1,7 +1,17 @@
 // SPDX-License-Identifier: MIT
 #include "stages/tiles.hpp"
 
+#include <algorithm>
+
 namespace manylight {
+
+std::size_t pixel_count(const Tiles& tiles) {
+    std::size_t pixels = 0;
+    for (const Region& root : root_regions(tiles))
+        pixels += std::size_t{std::min(root.x + root.size, tiles.width) - root.x} *
+                  (std::min(root.y + root.size, tiles.height) - root.y);
+    return pixels;
+}
 
 std::vector<Region> root_regions(const Tiles& tiles) {
     std::vector<Region> regions;

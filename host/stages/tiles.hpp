@@ -31,6 +31,9 @@ namespace manylight {
     return pixel;
 }
 
+/// Pixels of a run of tiles that lie in the image.
+[[nodiscard]] std::size_t pixel_count(const Tiles& tiles);
+
 /// The root regions of a run of tiles.
 [[nodiscard]] std::vector<Region> root_regions(const Tiles& tiles);
 

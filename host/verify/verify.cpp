@@ -6,15 +6,38 @@
 
 namespace manylight {
 
-void Check::compare(double difference, double tolerance, const std::string& item) {
+void Check::compare(double difference, double allowed, const std::string& item, bool zero) {
     ++items;
-    if (difference <= tolerance) {
-        if (difference > 0) largest = std::max(largest, difference / tolerance);
+    if (!zero) ++telling;
+    if (difference <= allowed) {
+        if (difference > 0) largest = std::max(largest, difference / allowed);
         return;
     }
-    largest = std::max(largest, tolerance > 0 ? difference / tolerance : 1e30);
+    largest = std::max(largest, allowed > 0 ? difference / allowed : 1e30);
     if (failed++ == 0) first_failure = item;
 }
+
+void Check::skip_borderline() {
+    ++items;
+    ++borderline;
+}
+
+namespace {
+
+constexpr std::size_t most_matrix_entries = std::size_t{1} << 26;
+
+Tiles choose_tiles(const VerifyOptions& options, std::size_t lights) {
+    Tiles tiles = all_tiles(options.width, options.height, options.clusters.tile_size);
+    const std::size_t per_tile = most_regions(options.clusters) * std::max<std::size_t>(lights, 1);
+    const auto most = static_cast<uint>(std::max<std::size_t>(most_matrix_entries / per_tile, 1));
+    if (tiles.count > most) {
+        tiles.first = (tiles.count - most) / 2;
+        tiles.count = most;
+    }
+    return tiles;
+}
+
+}  // namespace
 
 Verifier::Verifier(Device device, const Scene& scene, const Camera& camera,
                    const VerifyOptions& options)
@@ -22,7 +45,7 @@ Verifier::Verifier(Device device, const Scene& scene, const Camera& camera,
       scene_(scene),
       camera_(camera),
       options_(options),
-      tiles_(all_tiles(options.width, options.height, options.clusters.tile_size)),
+      tiles_(choose_tiles(options, scene.lights.size())),
       reach_(reach_of(scene, camera)),
       bvh_(build_wide_bvh(scene, lanes_for(device.info()), lanes_for(device.info()), reach_)),
       device_scene_(upload_scene(device_, scene, bvh_, camera)),
@@ -37,13 +60,6 @@ Verifier::Verifier(Device device, const Scene& scene, const Camera& camera,
         clustering_.matrix().values.download(0, clustering_.regions().size() * scene.lights.size());
     matrix_.resize(words.size());
     std::memcpy(matrix_.data(), words.data(), words.size() * sizeof(float));
-}
-
-Mixture Verifier::mixture(const Sampler& sampler) const {
-    double total = 0;
-    for (const Light& light : scene_.lights) total += light.emission.w;
-    return {sampler.shares.visible, sampler.shares.unshadowed, sampler.shares.power,
-            static_cast<float>(total)};
 }
 
 std::vector<Check> Verifier::all() {

@@ -15,17 +15,22 @@ namespace manylight {
 struct Check {
     std::string stage;
     std::size_t items = 0;
+    std::size_t telling = 0;         // items whose value is not simply 0
     std::size_t failed = 0;          // items beyond the tolerance
     std::size_t borderline = 0;      // items that rounding of the inputs decides either way
     double largest = 0;              // difference over tolerance, of the items that were compared
     std::string tolerance;           // in words, with its reason
     std::string first_failure = {};  // the first failed item and both values
 
+    /// Whether the scene says anything about the stage.
+    [[nodiscard]] bool tested() const { return telling > 0 || failed > 0; }
     /// Nothing failed, and no more is borderline than rays that graze edges explain.
     [[nodiscard]] bool passed() const { return failed == 0 && borderline <= 2 + items / 200; }
-    /// Counts an item; `difference` beyond `tolerance` fails it.
-    void compare(double difference, double tolerance, const std::string& item);
+    /// Counts an item; `difference` beyond `tolerance` fails it. `zero`: both values are 0.
+    void compare(double difference, double tolerance, const std::string& item, bool zero = false);
     void compare_exact(bool equal, const std::string& item) { compare(equal ? 0 : 2, 1, item); }
+    /// Counts an item that rounding decides either way.
+    void skip_borderline();
 };
 
 struct VerifyOptions {
@@ -56,14 +61,14 @@ class Verifier {
     [[nodiscard]] std::vector<Check> all();
 
   private:
-    [[nodiscard]] Mixture mixture(const Sampler& sampler) const;
+    [[nodiscard]] Tiles tiles_to_sample(uint light_samples) const;
     void check_surface(Check& check, const Surface& found, uint x, uint y, bool jitter);
 
     Device device_;
     const Scene& scene_;
     Camera camera_;
     VerifyOptions options_;
-    Tiles tiles_;
+    Tiles tiles_;  // those in the image's middle, as many as the matrix may have
     float reach_;
     WideBvh bvh_;
     DeviceScene device_scene_;

@@ -29,7 +29,8 @@ SHARED_SIZE(Mixture, 16)
 
 /// A CDF counts in integers: each light has a width of its probability times this, rounded down but
 /// at least 1 where the probability is positive. So a row's total stays below 2^32 for up to 2^31
-/// lights, every sum is exact, and the probability of a draw is exactly width / total.
+/// lights, every sum is exact, and the probability of a draw is width / total but for the rounding
+/// of 1 / p to a float.
 #define CDF_SCALE 2147483648.0f
 
 SHARED_END

@@ -7,7 +7,7 @@
 SHARED_BEGIN
 
 /// The kinds of light, X(name, NAME, value). A kind is a row here, `light_<name>` in
-/// kernels/lib/lights.h and a case in host/reference/lights.cpp.
+/// kernels/lib/lights.h and a case in host/reference/shading.cpp.
 #define LIGHT_KINDS(X)             \
     X(point, POINT, 0)             \
     X(spot, SPOT, 1)               \
@@ -19,19 +19,19 @@ SHARED_BEGIN
 enum LightKind { LIGHT_KINDS(LIGHT_KIND_VALUE) light_kind_count = 5 };
 #undef LIGHT_KIND_VALUE
 
+// clang-format off
 /// One light, world space, metres, glTF's photometric units.
 ///
-///             position.xyz  axis.xyz           edge.xyz              emission.rgb
-/// point       position      -                  -                     intensity, cd
-/// spot        position      unit, where it     x: angle scale,       intensity on the axis, cd
-///                           shines             y: angle offset
-/// directional -             unit, where it     -                     illuminance, lx
-///                           shines
-/// oriented    position      unit normal        -                     intensity along the normal,
-/// cd triangle    vertex 0      vertex 1 - 0       vertex 2 - 0          radiance, cd/m2
+///             position.xyz  axis.xyz                edge.xyz         emission.rgb
+/// point       position      -                       -                intensity, cd
+/// spot        position      unit, where it shines   x, y: as below   intensity on the axis, cd
+/// directional -             unit, where it shines   -                illuminance, lx
+/// oriented    position      unit normal             -                intensity on the normal, cd
+/// triangle    vertex 0      vertex 1 - vertex 0     vertex 2 - 0     radiance, cd/m2
 ///
-/// Angle scale and offset are those of KHR_lights_punctual; an oriented point is Lambert's
-/// (cosine).
+/// A spot's x and y are the angle scale and offset of KHR_lights_punctual; an oriented point is
+/// Lambert's (cosine).
+// clang-format on
 typedef struct Light {
     float4 position;  // w: the LightKind
     float4 axis;      // w: point, spot: range in m, 0 if unlimited; triangle: 1 if both sides emit

@@ -54,7 +54,10 @@ Mesh make_knot() {
 // All triangles of a glTF file.
 Mesh read_mesh(const std::string& path) {
     const Scene scene = load_scene(path);
-    if (scene.triangle_count() == 0) throw InputError("--mesh {}: has no triangles", path);
+    for (const std::string& warning : scene.warnings) fmt::print(stderr, "warning: {}\n", warning);
+    const Bounds bounds = scene.bounds();
+    if (scene.triangle_count() == 0 || !(bounds.radius() > 1e-6f * glm::length(bounds.centre())))
+        throw InputError("--mesh {}: has no triangles, or none with an extent", path);
     return {scene.vertices, scene.vertex_normals, scene.indices};
 }
 

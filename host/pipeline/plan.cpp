@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: MIT
+#include "pipeline/plan.hpp"
+
+#include <algorithm>
+
+#include "error.hpp"
+#include "pipeline/aov.hpp"
+
+namespace manylight {
+namespace {
+
+constexpr std::size_t items_per_batch = std::size_t{1} << 18;
+constexpr std::size_t default_budget = std::size_t{2} << 30;
+
+template <class T>
+std::size_t bytes_of(const std::vector<T>& values) {
+    return values.size() * sizeof(T);
+}
+
+std::string mebibytes(std::size_t bytes) {
+    return fmt::format("{:.1f} MiB", static_cast<double>(bytes) / (1 << 20));
+}
+
+void check_aovs(const RenderOptions& options, bool clusters) {
+    for (const Aov& aov : all_aovs())
+        if (aov.needs_clusters && !clusters && std::ranges::count(options.aovs, aov.name))
+            throw InputError("--aov {}: sampler {} makes no clusters here", aov.name,
+                             options.sampler);
+}
+
+// Throws unless the device can hold each of the scene's and the image's buffers.
+void check_buffers(const DeviceInfo& device, const Scene& scene, const WideBvh& bvh,
+                   std::size_t image) {
+    const std::pair<const char*, std::size_t> buffers[] = {
+        {"BVH nodes", bytes_of(bvh.nodes)},     {"triangles", bytes_of(bvh.blocks)},
+        {"vertices", bytes_of(scene.vertices)}, {"indices", bytes_of(scene.indices)},
+        {"lights", bytes_of(scene.lights)},     {"image", image}};
+    for (const auto& [name, bytes] : buffers)
+        if (bytes > device.max_allocation)
+            throw InputError("{}: its {} need {}, and {} allows {} at most in a buffer", scene.file,
+                             name, mebibytes(bytes), device.name, mebibytes(device.max_allocation));
+}
+
+}  // namespace
+
+std::size_t Plan::total_bytes() const {
+    return scene_bytes + image_bytes + batch_bytes + (clusters ? 0 : matrix_bytes);
+}
+
+Plan make_plan(const DeviceInfo& device, const Scene& scene, const WideBvh& bvh,
+               const RenderOptions& options) {
+    const Sampler& sampler = find_sampler(options.sampler);
+    const unsigned size = options.clusters.tile_size;
+    const std::size_t tile_items = std::size_t{size} * size;
+    const Tiles tiles = all_tiles(options.width, options.height, size);
+    const auto lights = static_cast<uint>(scene.lights.size());
+    Plan plan;
+    plan.clusters = sampler.table == Table::clusters && lights > 0;
+    plan.centres = plan.clusters || !options.aovs.empty();
+    check_aovs(options, plan.clusters);
+    plan.scene_bytes = bytes_of(bvh.nodes) + bytes_of(bvh.blocks) + bytes_of(scene.vertices) +
+                       bytes_of(scene.vertex_normals) + bytes_of(scene.indices) +
+                       bytes_of(scene.triangle_materials) + bytes_of(scene.materials) +
+                       bytes_of(scene.lights);
+    plan.image_bytes = std::size_t{options.width} * options.height * 2 * sizeof(float4);
+    check_buffers(device, scene, bvh, plan.image_bytes / 2);
+
+    const bool two_surfaces = plan.centres && options.jitters();
+    std::size_t tile_bytes =
+        tile_items * (sizeof(Surface) * (two_surfaces ? 2 : 1) + 2 * sizeof(float4));
+    std::size_t tile_matrix = 0;
+    if (plan.clusters) {
+        tile_bytes += Clustering::tile_bytes(options.clusters, lights);
+        tile_matrix = most_regions(options.clusters) * Matrix::row_bytes(lights);
+    } else if (sampler.table == Table::power && lights > 0) {
+        plan.matrix_bytes = Matrix::row_bytes(lights);
+    }
+    const std::size_t budget =
+        options.memory > 0 ? options.memory : std::min(device.global_memory / 2, default_budget);
+    const std::size_t fixed = plan.total_bytes();
+    if (fixed + tile_bytes > budget)
+        throw InputError(
+            "--memory: {}{} is too little: the scene needs {}, the image {}, and one tile {}{}",
+            mebibytes(budget), options.memory > 0 ? "" : " (the default)",
+            mebibytes(plan.scene_bytes), mebibytes(plan.image_bytes), mebibytes(tile_bytes),
+            plan.clusters ? " (a smaller --max-depth or --tile-size needs less)" : "");
+    if (tile_matrix > device.max_allocation)
+        throw InputError(
+            "{}: one tile's contribution matrix needs {}, and {} allows {} at most in a buffer (a "
+            "smaller --max-depth or --tile-size needs less)",
+            scene.file, mebibytes(tile_matrix), device.name, mebibytes(device.max_allocation));
+    std::size_t most = std::clamp<std::size_t>(items_per_batch / tile_items, 1, tiles.count);
+    most = std::min(most, (budget - fixed) / tile_bytes);
+    if (tile_matrix > 0) most = std::min(most, device.max_allocation / tile_matrix);
+    plan.tiles_per_batch = static_cast<unsigned>(most);
+    plan.batches = static_cast<unsigned>((tiles.count + most - 1) / most);
+    plan.matrix_bytes += most * tile_matrix;
+    plan.batch_bytes = most * tile_bytes;
+    return plan;
+}
+
+}  // namespace manylight

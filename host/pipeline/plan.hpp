@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "bvh/wide.hpp"
+#include "pipeline/clustering.hpp"
+
+namespace manylight {
+
+struct RenderOptions {
+    std::string sampler = "contribution-defensive";
+    uint light_samples = 4;  // per pixel sample; exhaustive takes all lights
+    uint spp = 4;            // pixel samples
+    uint seed = 0;
+    unsigned width = 512;
+    unsigned height = 512;
+    bool pixel_centre = false;  // all pixel samples at the pixel's centre; always with spp 1
+    ClusterOptions clusters;
+    std::size_t memory = 0;  // bytes on the device; 0: half of it, at most 2 GiB
+    std::vector<std::string> aovs;
+
+    /// Whether pixel samples lie at random in their pixels.
+    [[nodiscard]] bool jitters() const { return spp > 1 && !pixel_centre; }
+};
+
+/// What a frame will take on the device, bytes.
+struct Plan {
+    std::size_t scene_bytes = 0;
+    std::size_t image_bytes = 0;
+    std::size_t batch_bytes = 0;   // of everything that is kept for a batch of tiles
+    std::size_t matrix_bytes = 0;  // of contributions and CDFs, whether of a batch or not
+    unsigned batches = 0;
+    unsigned tiles_per_batch = 0;
+    bool clusters = false;  // whether pixels are clustered
+    bool centres = false;   // whether a G-buffer at the pixels' centres is kept
+
+    [[nodiscard]] std::size_t total_bytes() const;
+};
+
+/// As many tiles in a batch as the budget and the device allow, each with its quadtree at its
+/// worst. Throws InputError where the options contradict each other or not even one tile fits.
+[[nodiscard]] Plan make_plan(const DeviceInfo& device, const Scene& scene, const WideBvh& bvh,
+                             const RenderOptions& options);
+
+}  // namespace manylight
