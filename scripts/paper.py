@@ -36,18 +36,19 @@ def relmse(name, reference):
 
 
 def choose_samples(scene, share, device):
-    """N at which uniform takes the share of the all-lights time, by interpolation."""
+    """N at which uniform takes the share of the all-lights time, by the secant method."""
     def ratio(samples):
         pairs = []
-        for _ in range(3):
+        for _ in range(5):
             uniform = render(scene, "uniform", samples, 0, "scratch", *device)[0]
             pairs.append(uniform / render(scene, "exhaustive", 1, 0, "scratch", *device)[0])
         return statistics.median(pairs)
 
-    low, high = 8, 56
-    at_low, at_high = ratio(low), ratio(high)
-    guess = round(low + (share - at_low) * (high - low) / (at_high - at_low))
-    return max(guess, 1)
+    low, guess = 8, 56
+    at_low = ratio(low)
+    for _ in range(2):
+        guess = round(low + (share - at_low) * (guess - low) / (ratio(guess) - at_low))
+    return guess
 
 
 def measure(scene, share, rounds, device):
