@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Stage contributions: the cluster x light matrix of C(a, y), paper eq. (4) and (5).
 #include "lib/direct.h"
+#include "lib/rays.h"
 #include "shared/contribution.h"
 #include "shared/tiles.h"
 
@@ -8,25 +9,43 @@
 #define CENTROID (float2)(1.0f / 3.0f)
 
 // contributions[row * light_count + light], cd/m2 (luminance): what the light would contribute to
-// the row's representative with V = 1, negative where something is in between. Item i is light
-// i % light_count of row first_row + i / light_count.
-KERNEL void contributions_evaluate(Camera camera, BVH_PARAMETERS, __global const Surface* surfaces,
-                                   __global const Material* materials, __global const Light* lights,
-                                   uint light_count, __global const uint* representatives,
-                                   uint first_row, uint row_count, __global float* contributions) {
-    const ulong item = get_global_id(0);
-    const uint row = (uint)(item / light_count);
-    if (row >= row_count) return;
-    const uint light = (uint)(item % light_count);
-    const uint representative = representatives[first_row + row];
+// the row's representative with V = 1; and the ray that has to be free. Rows are cut to packets of
+// 16 lights; item i is lane i % 16 of packet i / 16, the first of which is first_row's first.
+KERNEL void contributions_aim(Camera camera, __global const Surface* surfaces,
+                              __global const Material* materials, __global const Light* lights,
+                              uint light_count, __global const uint* representatives,
+                              uint first_row, uint row_count, __global float* contributions,
+                              __global float4* origins, __global float* rays) {
+    const uint packets = (light_count + 15u) / 16u;  // of a row
+    const uint packet = (uint)get_global_id(0) / 16u;
+    const uint lane = (uint)get_global_id(0) % 16u;
+    if (packet >= row_count * packets) return;
+    const uint row = first_row + packet / packets;
+    const uint light = packet % packets * 16u + lane;
+    const uint representative = representatives[row];
+    RAY_END(rays, packet, lane) = 0.0f;
+    if (light >= light_count) return;
     float value = 0.0f;
     if (representative != NO_ITEM) {
         const Receiver receiver = make_receiver(surfaces + representative, materials, camera);
         Ray shadow;
         value = luminance(unshadowed(&receiver, lights + light, CENTROID, &shadow));
-        if (value > 0.0f && occluded(BVH_ARGUMENTS, shadow)) value = -value;
+        if (value > 0.0f) put_ray(rays, packet, lane, shadow);
+        if (lane == 0u) origins[packet] = (float4)(shadow_origin(&receiver), 0.0f);
     }
-    contributions[(ulong)(first_row + row) * light_count + light] = value;
+    contributions[(ulong)row * light_count + light] = value;
+}
+
+// Makes the contributions negative whose rays are occluded; items as above.
+KERNEL void contributions_hide(uint light_count, uint first_row, uint row_count,
+                               __global const float* rays, __global float* contributions) {
+    const uint packets = (light_count + 15u) / 16u;
+    const uint packet = (uint)get_global_id(0) / 16u;
+    const uint lane = (uint)get_global_id(0) % 16u;
+    if (packet >= row_count * packets || RAY_END(rays, packet, lane) >= 0.0f) return;
+    const ulong row = first_row + packet / packets;
+    const uint light = packet % packets * 16u + lane;
+    contributions[row * light_count + light] = -contributions[row * light_count + light];
 }
 
 // sums[row * chunks + chunk]: one work-item adds up LIGHT_CHUNK lights of a row, in order.

@@ -50,7 +50,7 @@ TEST(frame, batches_do_not_change_the_image) {
             return Frame(device, scene.scene, bvh, scene.camera, options).plan().batches;
         };
         EXPECT_EQ(batches(1 << 30), 1u);
-        const std::size_t little = 900'000;
+        const std::size_t little = 20'000'000;
         EXPECT_GT(batches(little), sampler.table == Table::clusters ? 3u : 0u);
         options.memory = 1 << 30;
         const FrameResult whole = test::render(device, scene, options);
@@ -190,7 +190,7 @@ TEST(frame, cluster_layers) {
     const test::TestScene& scene = test::scene_named("many");
     RenderOptions options = small_options("contribution");
     options.clusters.tile_size = 16;
-    options.memory = 3'500'000;
+    options.memory = 21'000'000;
     options.aovs = {"cluster", "representative", "visible_share", "lights"};
     const Tiles tiles = all_tiles(scene.width, scene.height, 16);
     FOR_EACH_DEVICE(shared) {

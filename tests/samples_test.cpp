@@ -79,7 +79,7 @@ Drawn draw_often(Device device, const Sampler& sampler) {
     clustering.normalise(mixture);
     Arguments tables = clustering.tables();
     tables.set("power_cdf", PdfStage(device, uploaded).of_powers(mixture));
-    SampleStage stage(device, uploaded, sampler.kernel_file);
+    SampleStage stage(device, uploaded, sampler.kernel_file, item_count(tiles));
     Estimates estimates{device.allocate<float4>(item_count(tiles)),
                         device.allocate<float4>(item_count(tiles))};
     for (uint i = 0; i < draws; ++i) {
@@ -177,7 +177,7 @@ TEST(samples, boundaries_of_a_small_cdf) {
         GBufferStage(device, uploaded).trace(tiles, {}, surfaces);
         Estimates estimates{device.allocate<float4>(item_count(tiles)),
                             device.allocate<float4>(item_count(tiles))};
-        SampleStage stage(device, uploaded, find_sampler("power").kernel_file);
+        SampleStage stage(device, uploaded, find_sampler("power").kernel_file, item_count(tiles));
         std::map<std::size_t, int> counts;
         for (uint i = 0; i < 40; ++i) {
             stage.draw(tiles, {i, 3, false}, 1, surfaces,

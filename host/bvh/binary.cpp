@@ -11,6 +11,8 @@ namespace manylight {
 namespace {
 
 constexpr int bin_count = 32;
+constexpr int few_bins = 8;                // for no more triangles than a leaf holds
+constexpr float splitting_cost = 1.2f;     // of one more child, as a factor; measured
 constexpr int deepest_sah = 48;            // below, halves: bounds the depth whatever the input
 constexpr std::size_t task_size = 32'768;  // triangles worth a thread of their own
 
@@ -42,12 +44,13 @@ struct Split {
 };
 
 // Maps centres to bins along each axis.
+template <int Bins>
 struct Binning {
     glm::vec3 lower, scale;
     explicit Binning(const Bounds& centres) : lower(centres.lower), scale(0) {
         for (int axis = 0; axis < 3; ++axis) {
             const float width = centres.upper[axis] - lower[axis];
-            if (width > 0) scale[axis] = bin_count * 0.9999f / width;
+            if (width > 0) scale[axis] = Bins * 0.9999f / width;
             if (!std::isfinite(scale[axis])) scale[axis] = 0;
         }
     }
@@ -82,12 +85,14 @@ class Builder {
             centres.add(references_[i].centre);
         }
         const std::size_t count = end - begin;
-        if (count <= leaf_size_) {
+        if (count <= leaf_size_ && !is_worth_splitting(begin, end, node.bounds, centres)) {
             node.first = static_cast<std::uint32_t>(begin);
             node.count = static_cast<std::uint32_t>(count);
             return;
         }
-        const std::size_t middle = partition(begin, end, centres, depth);
+        const std::size_t middle = count <= leaf_size_
+                                       ? partition<few_bins>(begin, end, centres, depth)
+                                       : partition<bin_count>(begin, end, centres, depth);
         const std::uint32_t left = next_node_.fetch_add(2);
         node.first = left;
         node.right = left + 1;
@@ -99,10 +104,20 @@ class Builder {
         fork ? task.get() : right();
     }
 
+    // Whether two blocks that hold a block's worth of triangles are met so much less often than
+    // one: walls of a room, say, in whose middle there is nothing.
+    [[nodiscard]] bool is_worth_splitting(std::size_t begin, std::size_t end, const Bounds& bounds,
+                                          const Bounds& centres) const {
+        if (end - begin < 2) return false;
+        const Split split = find_split<few_bins>(begin, end, Binning<few_bins>(centres));
+        return split.axis >= 0 && split.cost * splitting_cost < half_area(bounds);
+    }
+
     // Puts the left side's references first and returns where the right side's begin.
+    template <int Bins>
     std::size_t partition(std::size_t begin, std::size_t end, const Bounds& centres, int depth) {
-        const Binning binning(centres);
-        const Split split = depth < deepest_sah ? find_split(begin, end, binning) : Split{};
+        const Binning<Bins> binning(centres);
+        const Split split = depth < deepest_sah ? find_split<Bins>(begin, end, binning) : Split{};
         const auto first = references_.begin() + static_cast<std::ptrdiff_t>(begin);
         const auto last = references_.begin() + static_cast<std::ptrdiff_t>(end);
         if (split.axis < 0) return begin + (end - begin) / 2;  // coincident centres: any halves do
@@ -112,8 +127,9 @@ class Builder {
         return static_cast<std::size_t>(middle - references_.begin());
     }
 
-    Split find_split(std::size_t begin, std::size_t end, const Binning& binning) const {
-        std::array<std::array<Bin, bin_count>, 3> bins;
+    template <int Bins>
+    Split find_split(std::size_t begin, std::size_t end, const Binning<Bins>& binning) const {
+        std::array<std::array<Bin, Bins>, 3> bins;
         for (std::size_t i = begin; i < end; ++i)
             for (int axis = 0; axis < 3; ++axis) {
                 Bin& bin = bins[axis][binning.bin(references_[i], axis)];
@@ -131,17 +147,18 @@ class Builder {
         return half_area(bounds) * static_cast<float>((count + leaf_size_ - 1) / leaf_size_);
     }
 
-    void sweep(const std::array<Bin, bin_count>& bins, int axis, Split& best) const {
-        std::array<float, bin_count> right_cost{};
+    template <std::size_t Bins>
+    void sweep(const std::array<Bin, Bins>& bins, int axis, Split& best) const {
+        std::array<float, Bins> right_cost{};
         Bin right;
-        for (int i = bin_count - 1; i > 0; --i) {
+        for (int i = Bins - 1; i > 0; --i) {
             add(right.bounds, bins[i].bounds);
             right.count += bins[i].count;
             right_cost[i] = right.count == 0 ? std::numeric_limits<float>::infinity()
                                              : cost(right.bounds, right.count);
         }
         Bin left;
-        for (int i = 1; i < bin_count; ++i) {
+        for (int i = 1; i < static_cast<int>(Bins); ++i) {
             add(left.bounds, bins[i - 1].bounds);
             left.count += bins[i - 1].count;
             if (left.count == 0) continue;

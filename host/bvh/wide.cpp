@@ -14,6 +14,8 @@ namespace {
 // and two planes are compared.
 constexpr float padding_scale = 8 * std::numeric_limits<float>::epsilon();
 
+constexpr std::size_t block_rows = 13;
+
 float half_area(const Bounds& b) {
     const glm::vec3 d = b.upper - b.lower;
     return d.x * d.y + d.y * d.z + d.z * d.x;
@@ -77,14 +79,20 @@ class Collapser {
     }
 
     int make_block(const BinaryNode& leaf) {
-        const std::size_t index = wide_.blocks.size() / (10 * wide_.block);
-        wide_.blocks.resize(wide_.blocks.size() + 10 * wide_.block, 0.0f);
-        float* block = wide_.blocks.data() + index * 10 * wide_.block;
+        const std::size_t index = wide_.blocks.size() / (block_rows * wide_.block);
+        wide_.blocks.resize(wide_.blocks.size() + block_rows * wide_.block, 0.0f);
+        float* block = wide_.blocks.data() + index * block_rows * wide_.block;
         for (unsigned lane = 0; lane < leaf.count; ++lane) {
             const std::uint32_t triangle = binary_.triangles[leaf.first + lane];
             const std::uint32_t* corner = scene_.indices.data() + 3 * std::size_t{triangle};
+            const glm::vec3 first = scene_.vertices[corner[0]];
+            const glm::vec3 rows[] = {first, scene_.vertices[corner[1]] - first,
+                                      scene_.vertices[corner[2]] - first};
             for (int row = 0; row < 9; ++row)
-                block[row * wide_.block + lane] = scene_.vertices[corner[row / 3]][row % 3];
+                block[row * wide_.block + lane] = rows[row / 3][row % 3];
+            const glm::vec3 edges[] = {rows[1], rows[2], rows[2] - rows[1]};
+            for (int edge = 0; edge < 3; ++edge)
+                block[(10 + edge) * wide_.block + lane] = glm::compMax(glm::abs(edges[edge]));
             block[9 * wide_.block + lane] = std::bit_cast<float>(triangle);
         }
         return ~static_cast<int>(index << 4 | (leaf.count - 1));
@@ -109,7 +117,7 @@ WideBvh build_wide_bvh(const Scene& scene, unsigned width, unsigned block, float
         std::fill_n(wide.nodes.begin(), 3 * width, std::numeric_limits<float>::infinity());
         std::fill_n(wide.nodes.begin() + 3 * width, 3 * width,
                     -std::numeric_limits<float>::infinity());
-        wide.blocks.assign(10 * block, 0.0f);
+        wide.blocks.assign(block_rows * block, 0.0f);
     } else {
         stack = Collapser(scene, binary, wide, padding_scale * reach).collapse(0).second;
     }

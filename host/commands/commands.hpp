@@ -45,11 +45,25 @@ struct BuiltinArguments {
     std::string mesh;
 };
 
+struct BenchArguments {
+    std::string what;  // traversal, stages, or a scene file for both
+    SceneArguments scene;
+    std::string mesh;
+    std::string view = "far";  // far or close
+    std::string sampler = "contribution-defensive";
+    uint light_samples = 16;
+    std::string json;  // file
+    unsigned rounds = 7;
+    unsigned bvh_width = 0;  // 0: what suits the device
+    unsigned bvh_block = 0;
+};
+
 // Each returns the program's exit status and throws InputError or RuntimeError.
 int run_render(const RenderArguments& arguments);
 int run_verify(const VerifyArguments& arguments);
 int run_scene(const BuiltinArguments& arguments);
 int run_devices();
+int run_bench(const BenchArguments& arguments);
 int run_compare(const std::string& image, const std::string& reference, bool json);
 
 /// Parses the command line and runs what it asks for.
@@ -58,7 +72,7 @@ int run_program(int argc, char** argv);
 /// A scene with its lights, seen by a camera.
 struct LoadedScene {
     Scene scene;
-    std::string view_name;
+    View view;
     Camera camera;
     unsigned width, height;
     unsigned emitter_points;  // as made; 0: area lights

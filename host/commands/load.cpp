@@ -37,10 +37,9 @@ LoadedScene load(const SceneArguments& arguments) {
     add_emitters(scene, out.emitter_points);
     if (scene.lights.empty())
         fmt::print(stderr, "warning: {}: the scene has no lights\n", scene.file);
-    const View view = find_view(scene, arguments.camera);
-    out.view_name = view.name;
-    choose_size(out, arguments, view.aspect);
-    out.camera = make_camera(view, out.width, out.height);
+    out.view = find_view(scene, arguments.camera);
+    choose_size(out, arguments, out.view.aspect);
+    out.camera = make_camera(out.view, out.width, out.height);
     return out;
 }
 

@@ -67,12 +67,8 @@ const CLI::Validator power_of_two(
 
 constexpr std::uint64_t largest_uint = 4294967295;
 
-void add_scene(CLI::App& command, SceneArguments& scene) {
-    command.add_option("file", scene.file, "glTF 2.0 scene, .gltf or .glb")
-        ->required()
-        ->check([](const std::string& file) {
-            return file.empty() ? std::string("the name is empty") : std::string();
-        });
+// What a command that renders a scene needs beside its file.
+void add_view(CLI::App& command, SceneArguments& scene) {
     command.add_option("--camera", scene.camera, "camera by name (default: the file's first)");
     command
         .add_option("--emitter-points", scene.emitter_points,
@@ -87,6 +83,15 @@ void add_scene(CLI::App& command, SceneArguments& scene) {
         ->check(whole(1, 65536));
     command.add_option("--height", scene.height, "image height (default: 512)")
         ->check(whole(1, 65536));
+}
+
+void add_scene(CLI::App& command, SceneArguments& scene) {
+    command.add_option("file", scene.file, "glTF 2.0 scene, .gltf or .glb")
+        ->required()
+        ->check([](const std::string& file) {
+            return file.empty() ? std::string("the name is empty") : std::string();
+        });
+    add_view(command, scene);
 }
 
 void add_clusters(CLI::App& command, ClusterOptions& clusters) {
@@ -194,6 +199,42 @@ void add_verify(CLI::App& app, std::function<int()>& run) {
     command->callback([&run, arguments] { run = [arguments] { return run_verify(*arguments); }; });
 }
 
+void add_bench(CLI::App& app, std::function<int()>& run) {
+    auto arguments = std::make_shared<BenchArguments>();
+    CLI::App* command =
+        app.add_subcommand("bench", "measure traversal, beside Embree, and the stages of a frame");
+    command->add_option("what", arguments->what, "traversal, stages, or a scene file for both")
+        ->required();
+    command->add_option("--mesh", arguments->mesh,
+                        "traversal, stages: glTF file whose mesh stands in the dragon's room");
+    command->add_option("--view", arguments->view, "traversal, stages: far or close")
+        ->check(CLI::IsMember({"far", "close"}))
+        ->capture_default_str();
+    command->add_option("--json", arguments->json, "file for all figures");
+    command->add_option("--rounds", arguments->rounds, "rounds in which all take turns")
+        ->check(whole(1, 1000))
+        ->capture_default_str();
+    command->add_option("--sampler", arguments->sampler, "of the stages")->capture_default_str();
+    command->add_option("--light-samples", arguments->light_samples, "of the stages")
+        ->check(whole(1, 65536))
+        ->capture_default_str();
+    for (const auto& [name, value] : {std::pair{"--bvh-width", &arguments->bvh_width},
+                                      std::pair{"--bvh-block", &arguments->bvh_block}})
+        command->add_option(name, *value, "traversal: 4, 8 or 16 (default: as suits the device)")
+            ->check(CLI::IsMember({4, 8, 16}));
+    add_view(*command, arguments->scene);
+    command->footer(
+        "\nA figure is printed only after its hits, or its stages, were judged by the scalar "
+        "reference.\n\nExamples:\n"
+        "  manylight bench traversal --view close\n"
+        "  manylight bench traversal --mesh dragon.glb --json traversal.json\n"
+        "  manylight bench scene.glb --device intel\n");
+    command->callback([&run, arguments] {
+        (void)find_sampler(arguments->sampler);
+        run = [arguments] { return run_bench(*arguments); };
+    });
+}
+
 void add_scene_command(CLI::App& app, std::function<int()>& run) {
     auto arguments = std::make_shared<BuiltinArguments>();
     CLI::App* command = app.add_subcommand("scene", "write a built-in scene as a .glb file");
@@ -225,6 +266,7 @@ int run_program(int argc, char** argv) {
     std::function<int()> run;
     add_render(app, run);
     add_verify(app, run);
+    add_bench(app, run);
     add_scene_command(app, run);
     app.add_subcommand("devices", "list OpenCL devices and what each can do")->callback([&run] {
         run = run_devices;

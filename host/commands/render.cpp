@@ -59,7 +59,7 @@ void check_files(const RenderArguments& arguments, const std::vector<std::string
 
 void print_plan(const LoadedScene& loaded, const Plan& plan, const DeviceInfo& device) {
     fmt::print("{}: {} triangles, {} lights, camera '{}'\n", loaded.scene.file,
-               loaded.scene.triangle_count(), loaded.scene.lights.size(), loaded.view_name);
+               loaded.scene.triangle_count(), loaded.scene.lights.size(), loaded.view.name);
     fmt::print("{} ({})\n", device.name, device.platform);
     fmt::print("memory: {}: scene {}, image {}, pixels in work {}", mebibytes(plan.total_bytes()),
                mebibytes(plan.scene_bytes), mebibytes(plan.image_bytes),
@@ -73,7 +73,7 @@ void print_plan(const LoadedScene& loaded, const Plan& plan, const DeviceInfo& d
 json make_parameters(const RenderOptions& o, const LoadedScene& loaded, uint light_samples) {
     return {
         {"scene", loaded.scene.file},
-        {"camera", loaded.view_name},
+        {"camera", loaded.view.name},
         {"emitter_points", loaded.emitter_points},
         {"sampler", o.sampler},
         {"light_samples", light_samples},
@@ -106,7 +106,12 @@ json make_stats(json parameters, const LoadedScene& loaded, const Plan& plan,
     stats["seconds"] = {{"compile", device.compile_seconds()},
                         {"prepare", result.prepare_seconds},
                         {"render", result.render_seconds}};
-    stats["stage_seconds"] = device.stage_seconds();
+    const std::map<std::string, double> stages = device.stage_seconds();
+    stats["stage_seconds"] = stages;
+    const auto shadows = stages.find("shadows");
+    if (shadows != stages.end() && shadows->second > 0)
+        stats["shadow_mrays_per_s"] =
+            static_cast<double>(result.shadow_rays) / shadows->second / 1e6;
     return stats;
 }
 

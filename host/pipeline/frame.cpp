@@ -40,10 +40,10 @@ struct Frame::Stages {
     Estimates estimates;
     ImageSum image;
 
-    Stages(Device& device, DeviceScene uploaded, const Sampler& sampler)
+    Stages(Device& device, DeviceScene uploaded, const Sampler& sampler, std::size_t items)
         : scene(std::move(uploaded)),
           gbuffer(device, scene),
-          samples(device, scene, sampler.kernel_file),
+          samples(device, scene, sampler.kernel_file, items),
           accumulate(device, scene) {}
 };
 
@@ -69,12 +69,12 @@ Buffer<float4> Frame::allocate_zeros(std::size_t count) {
 }
 
 void Frame::prepare() {
-    stages_ =
-        std::make_shared<Stages>(device_, upload_scene(device_, scene_, bvh_, camera_), sampler_);
-    Stages& s = *stages_;
     const std::size_t pixels = std::size_t{options_.width} * options_.height;
     const std::size_t items = std::size_t{plan_.tiles_per_batch} * options_.clusters.tile_size *
                               options_.clusters.tile_size;
+    stages_ = std::make_shared<Stages>(device_, upload_scene(device_, scene_, bvh_, camera_),
+                                       sampler_, items);
+    Stages& s = *stages_;
     s.surfaces = device_.allocate<Surface>(items);
     if (plan_.centres)
         s.centres = options_.jitters() ? device_.allocate<Surface>(items) : s.surfaces;

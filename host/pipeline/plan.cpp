@@ -5,11 +5,12 @@
 
 #include "error.hpp"
 #include "pipeline/aov.hpp"
+#include "stages/samples.hpp"
 
 namespace manylight {
 namespace {
 
-constexpr std::size_t items_per_batch = std::size_t{1} << 18;
+constexpr std::size_t items_per_batch = std::size_t{1} << 16;  // whose rays the caches hold
 constexpr std::size_t default_budget = std::size_t{2} << 30;
 
 template <class T>
@@ -66,18 +67,20 @@ Plan make_plan(const DeviceInfo& device, const Scene& scene, const WideBvh& bvh,
     check_buffers(device, scene, bvh, plan.image_bytes / 2);
 
     const bool two_surfaces = plan.centres && options.jitters();
-    std::size_t tile_bytes =
-        tile_items * (sizeof(Surface) * (two_surfaces ? 2 : 1) + 2 * sizeof(float4));
+    std::size_t tile_bytes = tile_items * (sizeof(Surface) * (two_surfaces ? 2 : 1) +
+                                           2 * sizeof(float4) + SampleStage::item_bytes());
     std::size_t tile_matrix = 0;
+    std::size_t ray_bytes = 0;
     if (plan.clusters) {
         tile_bytes += Clustering::tile_bytes(options.clusters, lights);
+        ray_bytes = ContributionStage::ray_bytes(lights);
         tile_matrix = most_regions(options.clusters) * Matrix::row_bytes(lights);
     } else if (sampler.table == Table::power && lights > 0) {
         plan.matrix_bytes = Matrix::row_bytes(lights);
     }
     const std::size_t budget =
         options.memory > 0 ? options.memory : std::min(device.global_memory / 2, default_budget);
-    const std::size_t fixed = plan.total_bytes();
+    const std::size_t fixed = plan.total_bytes() + ray_bytes;
     if (fixed + tile_bytes > budget)
         throw InputError(
             "--memory: {}{} is too little: the scene needs {}, the image {}, and one tile {}{}",
@@ -95,7 +98,7 @@ Plan make_plan(const DeviceInfo& device, const Scene& scene, const WideBvh& bvh,
     plan.tiles_per_batch = static_cast<unsigned>(most);
     plan.batches = static_cast<unsigned>((tiles.count + most - 1) / most);
     plan.matrix_bytes += most * tile_matrix;
-    plan.batch_bytes = most * tile_bytes;
+    plan.batch_bytes = ray_bytes + most * tile_bytes;
     return plan;
 }
 

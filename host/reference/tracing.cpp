@@ -103,10 +103,16 @@ std::optional<Hit> Tracer::closest_hit_of_all(const Ray& ray) const {
     return best;
 }
 
+std::optional<Hit> Tracer::hit_of(uint triangle, const Ray& ray) const {
+    std::optional<Hit> hit;
+    test(triangle, ray, hit);
+    return hit;
+}
+
 std::vector<Ray> Tracer::neighbours(const Ray& ray, double distance) {
     std::vector<Ray> rays;
     const double scale = std::isinf(ray.end) ? glm::length(ray.direction) : 1;
-    for (const double size : {1.0, 0.25})
+    for (const double size : {1.0, 0.5, 0.25, 0.125, 0.0625})
         for (int k = 0; k < 64; ++k) {
             const auto corner_of = [&](int bits) {
                 return glm::dvec3(bits & 1 ? 1 : -1, bits & 2 ? 1 : -1, bits & 4 ? 1 : -1) *

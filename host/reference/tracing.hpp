@@ -30,6 +30,9 @@ class Tracer {
     [[nodiscard]] std::optional<Hit> closest_hit(const Ray& ray) const;
     [[nodiscard]] bool occluded(const Ray& ray) const { return closest_hit(ray).has_value(); }
 
+    /// Where a ray hits one triangle.
+    [[nodiscard]] std::optional<Hit> hit_of(uint triangle, const Ray& ray) const;
+
     /// The same by testing every triangle: what the tree itself is checked against.
     [[nodiscard]] std::optional<Hit> closest_hit_of_all(const Ray& ray) const;
 

@@ -6,6 +6,7 @@
 #include "shared/contribution.h"
 #include "shared/surface.h"
 #include "stages/device_scene.hpp"
+#include "stages/shadows.hpp"
 
 namespace manylight {
 
@@ -34,6 +35,9 @@ class ContributionStage {
   public:
     ContributionStage(Device& device, const DeviceScene& scene);
 
+    /// Bytes on the device for the rays of one launch.
+    [[nodiscard]] static std::size_t ray_bytes(uint light_count);
+
     /// Fills rows first to first + count, of the regions' representatives, and their totals.
     /// `progress` is called with the entries done after each launch.
     void evaluate(const Buffer<Surface>& surfaces, const Buffer<uint>& representatives, uint first,
@@ -41,7 +45,9 @@ class ContributionStage {
 
   private:
     Arguments scene_;
-    Kernel evaluate_;
+    ShadowStage shadows_;
+    Kernel aim_;
+    Kernel hide_;
     Kernel sum_;
     Kernel total_;
 };

@@ -32,6 +32,8 @@ DeviceScene upload_scene(Device& device, const Scene& scene, const WideBvh& bvh,
     const Features features = find_features(scene);
     DeviceScene out;
     out.light_count = static_cast<uint>(scene.lights.size());
+    out.packets = !device.info().is_gpu;
+    out.primary_packets = out.packets && camera.forward.w == 0;
     out.arguments.set("camera", camera)
         .set("bvh_nodes", device.upload(bvh.nodes))
         .set("bvh_blocks", device.upload(bvh.blocks))

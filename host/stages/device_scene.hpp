@@ -15,6 +15,8 @@ struct DeviceScene {
     Defines shading;      // for kernels that evaluate lights and materials, traversal included
     Defines emission;     // for kernels that add what surfaces emit
     uint light_count = 0;
+    bool packets = false;          // rays with one origin are traced 16 at a time
+    bool primary_packets = false;  // ... and primary rays have one origin
 };
 
 /// Lanes of a BVH node and of a triangle block that suit a device.

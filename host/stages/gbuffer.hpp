@@ -25,6 +25,7 @@ class GBufferStage {
   private:
     Arguments scene_;
     Kernel trace_;
+    std::size_t rays_per_item_;
 };
 
 }  // namespace manylight

@@ -4,29 +4,35 @@
 namespace manylight {
 
 SampleStage::SampleStage(Device& device, const DeviceScene& scene, std::string_view file,
-                         std::size_t per_launch)
+                         std::size_t items)
     : scene_(scene.arguments),
+      shadows_(device, scene, items),
       draw_(device.kernel(file, "samples_draw", scene.shading, "samples")),
-      per_launch_(per_launch) {}
+      add_(device.kernel("samples.cl", "samples_add", scene.traversal, "samples")),
+      values_(device.allocate<float>(48 * items)) {}
 
 void SampleStage::draw(const Tiles& tiles, const PixelSample& sample, uint light_samples,
                        const Buffer<Surface>& surfaces, const Arguments& tables,
                        Estimates& estimates, const std::function<void(std::size_t)>& progress) {
+    const std::size_t items = item_count(tiles);
     Arguments arguments = scene_;
     arguments.set(tables)
+        .set(shadows_.buffers())
         .set("tiles", tiles)
         .set("surfaces", surfaces)
         .set("pixel_sample", sample.index)
         .set("seed", sample.seed)
         .set("sample_count", light_samples)
+        .set("values", values_)
         .set("estimates", estimates.sums)
         .set("residuals", estimates.residuals);
-    const auto step = static_cast<uint>(std::max<std::size_t>(per_launch_ / item_count(tiles), 1));
-    for (uint first = 0; first < light_samples; first += step) {
-        const uint end = std::min(first + step, light_samples);
-        draw_.launch(item_count(tiles),
-                     arguments.set("first_sample", first).set("end_sample", end));
-        progress(item_count(tiles) * (end - first));
+    for (uint first = 0; first < light_samples; first += 16) {
+        const uint end = std::min(first + 16, light_samples);
+        arguments.set("first_sample", first).set("end_sample", end).set("start", uint{first == 0});
+        draw_.launch(items, arguments);
+        shadows_.trace(items);
+        add_.launch(items, arguments);
+        progress(items * (end - first));
     }
 }
 

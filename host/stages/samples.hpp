@@ -6,6 +6,7 @@
 #include "shared/surface.h"
 #include "stages/device_scene.hpp"
 #include "stages/gbuffer.hpp"
+#include "stages/shadows.hpp"
 
 namespace manylight {
 
@@ -19,10 +20,8 @@ struct Estimates {
 /// Stage samples: N light samples for each pixel sample (paper (2)), or all lights (paper (1)).
 class SampleStage {
   public:
-    /// `file`: the sampler's kernel file. A launch draws as many samples of all items as come to
-    /// about `per_launch`, but at least one.
-    SampleStage(Device& device, const DeviceScene& scene, std::string_view file,
-                std::size_t per_launch = std::size_t{1} << 22);
+    /// `file`: the sampler's kernel file. For up to `items` items, 16 samples of each at a time.
+    SampleStage(Device& device, const DeviceScene& scene, std::string_view file, std::size_t items);
 
     /// Fills the estimates of `tiles`. `tables` names the buffers that the sampler needs.
     /// `progress` is called with the light samples done, over all items, after each launch.
@@ -30,10 +29,17 @@ class SampleStage {
               const Buffer<Surface>& surfaces, const Arguments& tables, Estimates& estimates,
               const std::function<void(std::size_t)>& progress);
 
+    /// Bytes of an item on the device.
+    [[nodiscard]] static constexpr std::size_t item_bytes() {
+        return ShadowStage::packet_bytes() + 48 * sizeof(float);
+    }
+
   private:
     Arguments scene_;
+    ShadowStage shadows_;
     Kernel draw_;
-    std::size_t per_launch_;
+    Kernel add_;
+    Buffer<float> values_;  // [48 * item + 16 * channel + lane], see kernels/lib/samples.h
 };
 
 }  // namespace manylight

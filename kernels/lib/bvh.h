@@ -3,8 +3,10 @@
 //
 // Layout (host/bvh/wide.hpp): a node is 7 vectors of BVH_WIDTH lanes: lower x y z, upper x y z,
 // children. A child >= 0 is a node; < 0 is a leaf, ~(block << 4 | triangles - 1); empty lanes have
-// inverted bounds and child -1. A block is 10 vectors of BVH_BLOCK lanes: vertices 0, 1, 2, each x
-// y z, and the triangle's index; empty lanes are zero, a triangle that no ray hits.
+// inverted bounds and child -1. A block is 13 vectors of BVH_BLOCK lanes: vertex 0, vertex 1 -
+// vertex 0, vertex 2 - vertex 0, each x y z, the triangle's index, and the largest coordinate of
+// each edge, the third from vertex 1 to vertex 2; empty lanes are zero, a triangle that no ray
+// hits.
 #ifndef MANYLIGHT_LIB_BVH_H
 #define MANYLIGHT_LIB_BVH_H
 
@@ -13,27 +15,34 @@
 #define JOIN_TOKENS(a, b) a##b
 #define JOIN(a, b) JOIN_TOKENS(a, b)
 
+#define BLOCK_ROWS 13
+
 typedef JOIN(float, BVH_WIDTH) float_w;
 typedef JOIN(int, BVH_WIDTH) int_w;
 typedef JOIN(float, BVH_BLOCK) float_k;
 typedef JOIN(int, BVH_BLOCK) int_k;
 
-// A set of lanes as one integer, a bit per lane at stride 8 (16 lanes: two interleaved halves).
-// PoCL turns these conversions of a comparison into one mask move; any() becomes branches.
-#define lanes_4(comparison) (ulong)(as_uint(convert_char4(comparison)) & 0x01010101u)
-#define lanes_8(comparison) (as_ulong(convert_char8(comparison)) & 0x0101010101010101ul)
-static ulong lanes_16(int16 comparison) {
-    const ulong2 bytes = as_ulong2(convert_char16(comparison));
-    return (bytes.x & 0x0101010101010101ul) | ((bytes.y & 0x0101010101010101ul) << 1);
+// A set of lanes as one integer, a bit per lane: lanes_N(comparison), lowest(set).
+#if defined(__AVX512DQ__) && defined(__AVX512VL__)
+#define lanes_4(comparison) (uint)(uchar) __builtin_ia32_cvtd2mask128(comparison)
+#define lanes_8(comparison) (uint)(uchar) __builtin_ia32_cvtd2mask256(comparison)
+#define lanes_16(comparison) (uint)(ushort) __builtin_ia32_cvtd2mask512(comparison)
+#else
+// PoCL turns these conversions of a comparison into one mask move; any() becomes branches. The
+// product gathers the lowest bits of eight bytes in its highest byte.
+static uint lanes_8(int8 comparison) {
+    const ulong bytes = as_ulong(convert_char8(comparison)) & 0x0101010101010101ul;
+    return (uint)((bytes * 0x0102040810204080ul) >> 56);
 }
+static uint lanes_4(int4 comparison) { return lanes_8((int8)(comparison, (int4)(0))); }
+static uint lanes_16(int16 comparison) {
+    return lanes_8(comparison.lo) | (lanes_8(comparison.hi) << 8);
+}
+#endif
+// The lowest lane of a set; OpenCL C 1.2 has clz but not ctz.
+static uint lowest(uint lanes) { return 31u - (uint)clz(lanes & (0u - lanes)); }
 #define lanes_w JOIN(lanes_, BVH_WIDTH)
 #define lanes_k JOIN(lanes_, BVH_BLOCK)
-
-// The lane of the lowest bit set; OpenCL C 1.2 has clz but not ctz.
-static uint first_lane(ulong lanes) {
-    const uint bit = 63u - (uint)clz(lanes & (0ul - lanes));
-    return (bit >> 3) + ((bit & 1u) << 3);
-}
 
 // A segment origin + t direction, 0 < t < end.
 typedef struct Ray {
@@ -46,21 +55,19 @@ typedef struct Ray {
 typedef struct Hit {
     uint triangle;
     float t;
-    float u;  // weight of vertex 1
-    float v;  // weight of vertex 2
 } Hit;
+
+#define as_int_k JOIN(as_int, BVH_BLOCK)
+#define as_float_k JOIN(as_float, BVH_BLOCK)
 
 #define BVH_PARAMETERS __global const float_w *bvh_nodes, __global const float_k *bvh_blocks
 #define BVH_ARGUMENTS bvh_nodes, bvh_blocks
 
-// What the tests of boxes and triangles need of a ray.
+// What the test of boxes needs of a ray.
 typedef struct Prepared {
     float3 inverse;  // slabs: planes at p are crossed at p * inverse + bias
     float3 bias;
     int near_x, near_y, near_z;  // which of a node's vectors holds the plane that is met first
-    float3 origin;               // triangles: axes permuted so that the last is the ray's longest
-    float3 shear;
-    int x, y, z;
 } Prepared;
 
 static float safe_inverse(float d) {
@@ -68,28 +75,24 @@ static float safe_inverse(float d) {
     return 1.0f / (fabs(d) < 1e-20f ? copysign(1e-20f, d) : d);
 }
 
-static Prepared prepare_ray(Ray ray) {
-    const float3 o = ray.origin;
-    const float3 d = ray.direction;
+static Prepared prepare(float3 origin, float3 inverse) {
     Prepared p;
-    p.inverse = (float3)(safe_inverse(d.x), safe_inverse(d.y), safe_inverse(d.z));
-    p.bias = -o * p.inverse;
-    p.near_x = p.inverse.x < 0.0f ? 3 : 0;
-    p.near_y = p.inverse.y < 0.0f ? 4 : 1;
-    p.near_z = p.inverse.z < 0.0f ? 5 : 2;
-    const float3 size = fabs(d);
-    p.z = size.x > size.y ? (size.x > size.z ? 0 : 2) : (size.y > size.z ? 1 : 2);
-    p.x = p.z == 2 ? 0 : p.z + 1;
-    p.y = p.x == 2 ? 0 : p.x + 1;
-    const float3 axes = p.z == 0 ? d.yzx : p.z == 1 ? d.zxy : d;
-    p.origin = p.z == 0 ? o.yzx : p.z == 1 ? o.zxy : o;
-    p.shear = (float3)(axes.x, axes.y, 1.0f) / axes.z;
+    p.inverse = inverse;
+    p.bias = -origin * inverse;
+    p.near_x = inverse.x < 0.0f ? 3 : 0;
+    p.near_y = inverse.y < 0.0f ? 4 : 1;
+    p.near_z = inverse.z < 0.0f ? 5 : 2;
     return p;
+}
+
+static Prepared prepare_ray(Ray ray) {
+    const float3 d = ray.direction;
+    return prepare(ray.origin, (float3)(safe_inverse(d.x), safe_inverse(d.y), safe_inverse(d.z)));
 }
 
 // The children whose boxes the segment enters; `entry` gets where. Boxes are padded on the host by
 // more than the rounding error of these operations (host/bvh/wide.hpp).
-static ulong enter_children(__global const float_w* node, const Prepared* s, float end,
+static int_w enter_children(__global const float_w* node, const Prepared* s, float end,
                             float_w* entry) {
     const float_w ix = s->inverse.x, iy = s->inverse.y, iz = s->inverse.z;
     const float_w bx = s->bias.x, by = s->bias.y, bz = s->bias.z;
@@ -101,40 +104,74 @@ static ulong enter_children(__global const float_w* node, const Prepared* s, flo
     const float_w far_z = fma(node[7 - s->near_z], iz, bz);
     *entry = max(max(near_x, near_y), max(near_z, (float_w)(0.0f)));
     const float_w leave = min(min(far_x, far_y), min(far_z, (float_w)(end)));
-    return lanes_w(*entry <= leave);
+    return *entry <= leave;
+}
+
+// Rays as close to an edge as rounding may have taken them hit the triangles on both of its sides,
+// so that none passes in between.
+#define MARGIN_SCALE 1e-6f
+
+// What the test of a block's triangles (Moller and Trumbore, "Fast, Minimum Storage Ray/Triangle
+// Intersection", 1997) needs, for all rays of one origin: dot products with a ray's direction give
+// the determinant (n), and, times it, the weights of vertices 1 (q), 2 (r) and 0 (s), each from
+// its own edge: as 1 - u - v the last would lose its precision in slivers.
+typedef struct PreparedBlock {
+    float_k n[3], q[3], r[3], s[3];
+    float_k t;                             // t times the determinant
+    float_k margin_u, margin_v, margin_w;  // of the weights times the determinant, for directions
+                                           // whose largest part is 1
+} PreparedBlock;
+
+static PreparedBlock prepare_block(__global const float_k* block, float3 origin) {
+    const float_k ax = block[0] - origin.x, ay = block[1] - origin.y, az = block[2] - origin.z;
+    const float_k fx = block[3], fy = block[4], fz = block[5];
+    const float_k gx = block[6], gy = block[7], gz = block[8];
+    PreparedBlock b;
+    b.n[0] = fma(fy, gz, -fz * gy);
+    b.n[1] = fma(fz, gx, -fx * gz);
+    b.n[2] = fma(fx, gy, -fy * gx);
+    b.q[0] = fma(gy, az, -gz * ay);
+    b.q[1] = fma(gz, ax, -gx * az);
+    b.q[2] = fma(gx, ay, -gy * ax);
+    b.r[0] = fma(ay, fz, -az * fy);
+    b.r[1] = fma(az, fx, -ax * fz);
+    b.r[2] = fma(ax, fy, -ay * fx);
+    b.t = fma(ax, b.n[0], fma(ay, b.n[1], az * b.n[2]));
+    const float_k bx = ax + fx, by = ay + fy, bz = az + fz;
+    const float_k hx = gx - fx, hy = gy - fy, hz = gz - fz;
+    b.s[0] = fma(by, hz, -bz * hy);
+    b.s[1] = fma(bz, hx, -bx * hz);
+    b.s[2] = fma(bx, hy, -by * hx);
+    const float_k far = max(max(fabs(ax), fabs(ay)), fabs(az)) * MARGIN_SCALE;
+    b.margin_u = far * block[11];
+    b.margin_v = far * block[10];
+    b.margin_w = fma(block[10], MARGIN_SCALE, far) * block[12];
+    return b;
 }
 
 typedef struct BlockHits {
-    float_k t, u, v;
-    ulong lanes;
+    float_k t, n;  // t and what it is to be divided by
+    int_k hit;
 } BlockHits;
 
-// Woop, Benthin, Wald, "Watertight Ray/Triangle Intersection" (JCGT 2:1, 2013): vertices are
-// sheared so that the ray runs along z, and the edge functions of a shared edge are exact negatives
-// of each other in its two triangles, for which they must not be fused.
-static BlockHits hit_block(__global const float_k* block, const Prepared* p, float end) {
-    const float_k ox = p->origin.x, oy = p->origin.y, oz = p->origin.z;
-    const float_k shear_x = -p->shear.x, shear_y = -p->shear.y;
-    const float_k az = block[p->z] - oz;
-    const float_k bz = block[3 + p->z] - oz;
-    const float_k cz = block[6 + p->z] - oz;
-    const float_k ax = fma(shear_x, az, block[p->x] - ox);
-    const float_k ay = fma(shear_y, az, block[p->y] - oy);
-    const float_k bx = fma(shear_x, bz, block[3 + p->x] - ox);
-    const float_k by = fma(shear_y, bz, block[3 + p->y] - oy);
-    const float_k cx = fma(shear_x, cz, block[6 + p->x] - ox);
-    const float_k cy = fma(shear_y, cz, block[6 + p->y] - oy);
-    const float_k edge_a = cx * by - cy * bx;
-    const float_k edge_b = ax * cy - ay * cx;
-    const float_k edge_c = bx * ay - by * ax;
-    const float_k inverse = 1.0f / (edge_a + edge_b + edge_c);  // empty lanes: 0 / 0, no hit
+// One ray against all triangles.
+static BlockHits hit_block(const PreparedBlock* b, float3 direction, float end) {
+    const float_k x = direction.x, y = direction.y, z = direction.z;
+    const float_k n = fma(x, b->n[0], fma(y, b->n[1], z * b->n[2]));
+    const float_k q = fma(x, b->q[0], fma(y, b->q[1], z * b->q[2]));
+    const float_k r = fma(x, b->r[0], fma(y, b->r[1], z * b->r[2]));
+    const int_k sign = as_int_k(n) & (int)0x80000000;
+    const float_k u = as_float_k(as_int_k(q) ^ sign);
+    const float_k v = as_float_k(as_int_k(r) ^ sign);
     BlockHits hits;
-    hits.u = edge_b * inverse;
-    hits.v = edge_c * inverse;
-    hits.t = fma(edge_a, az, fma(edge_b, bz, edge_c * cz)) * (inverse * p->shear.z);
-    const float_k lowest = min(min(edge_a, edge_b), edge_c);
-    const float_k highest = max(max(edge_a, edge_b), edge_c);
-    hits.lanes = lanes_k(((lowest >= 0.0f) | (highest <= 0.0f)) & (hits.t > 0.0f) & (hits.t < end));
+    hits.n = fabs(n);
+    hits.t = as_float_k(as_int_k(b->t) ^ sign);
+    const float size = max(max(fabs(direction.x), fabs(direction.y)), fabs(direction.z));
+    const float_k s = fma(x, b->s[0], fma(y, b->s[1], z * b->s[2]));
+    const float_k w = as_float_k(as_int_k(s) ^ sign);
+    const float_k inside =
+        min(min(fma(b->margin_u, size, u), fma(b->margin_v, size, v)), fma(b->margin_w, size, w));
+    hits.hit = (inside >= 0.0f) & (hits.t > 0.0f) & (hits.t < hits.n * end);
     return hits;
 }
 
@@ -147,15 +184,17 @@ static bool occluded(BVH_PARAMETERS, Ray ray) {
     while (top > 0) {
         const int entry = stack[--top];
         if (entry < 0) {
-            if (hit_block(bvh_blocks + (~entry >> 4) * 10, &prepared, ray.end).lanes) return true;
+            const PreparedBlock block =
+                prepare_block(bvh_blocks + (~entry >> 4) * BLOCK_ROWS, ray.origin);
+            if (lanes_k(hit_block(&block, ray.direction, ray.end).hit)) return true;
             continue;
         }
         __global const float_w* node = bvh_nodes + entry * 7;
         __global const int* children = (__global const int*)(node + 6);
         float_w near;
-        for (ulong lanes = enter_children(node, &prepared, ray.end, &near); lanes;
-             lanes &= lanes - 1ul)
-            stack[top++] = children[first_lane(lanes)];
+        for (uint lanes = lanes_w(enter_children(node, &prepared, ray.end, &near)); lanes;
+             lanes &= lanes - 1u)
+            stack[top++] = children[lowest(lanes)];
     }
     return false;
 }
@@ -163,7 +202,7 @@ static bool occluded(BVH_PARAMETERS, Ray ray) {
 // The hit with the smallest t.
 static Hit closest_hit(BVH_PARAMETERS, Ray ray) {
     const Prepared prepared = prepare_ray(ray);
-    Hit hit = {~0u, ray.end, 0.0f, 0.0f};
+    Hit hit = {~0u, ray.end};
     int stack[BVH_STACK];
     float distance[BVH_STACK];
     int top = 0;
@@ -173,23 +212,19 @@ static Hit closest_hit(BVH_PARAMETERS, Ray ray) {
         const int entry = stack[--top];
         if (distance[top] > ray.end) continue;
         if (entry < 0) {
-            __global const float_k* block = bvh_blocks + (~entry >> 4) * 10;
-            const BlockHits hits = hit_block(block, &prepared, ray.end);
-            if (!hits.lanes) continue;
+            __global const float_k* block = bvh_blocks + (~entry >> 4) * BLOCK_ROWS;
+            const PreparedBlock ready = prepare_block(block, ray.origin);
+            const BlockHits hits = hit_block(&ready, ray.direction, ray.end);
+            const uint found = lanes_k(hits.hit);
+            if (!found) continue;
             __global const uint* triangles = (__global const uint*)(block + 9);
             float t[BVH_BLOCK] __attribute__((aligned(64)));
-            float u[BVH_BLOCK] __attribute__((aligned(64)));
-            float v[BVH_BLOCK] __attribute__((aligned(64)));
-            *(float_k*)t = hits.t;
-            *(float_k*)u = hits.u;
-            *(float_k*)v = hits.v;
-            for (ulong lanes = hits.lanes; lanes; lanes &= lanes - 1ul) {
-                const uint lane = first_lane(lanes);
+            *(float_k*)t = hits.t / hits.n;
+            for (uint lanes = found; lanes; lanes &= lanes - 1u) {
+                const uint lane = lowest(lanes);
                 if (t[lane] >= hit.t) continue;
                 hit.triangle = triangles[lane];
                 hit.t = t[lane];
-                hit.u = u[lane];
-                hit.v = v[lane];
             }
             ray.end = hit.t;
             continue;
@@ -199,10 +234,10 @@ static Hit closest_hit(BVH_PARAMETERS, Ray ray) {
         float near[BVH_WIDTH] __attribute__((aligned(64)));
         float nearest = INFINITY;
         float_w enter;
-        ulong lanes = enter_children(node, &prepared, ray.end, &enter);
+        uint lanes = lanes_w(enter_children(node, &prepared, ray.end, &enter));
         *(float_w*)near = enter;
-        for (; lanes; lanes &= lanes - 1ul) {  // the nearest child ends on top of the stack
-            const uint lane = first_lane(lanes);
+        for (; lanes; lanes &= lanes - 1u) {  // the nearest child ends on top of the stack
+            const uint lane = lowest(lanes);
             stack[top] = children[lane];
             distance[top] = near[lane];
             if (near[lane] >= nearest) {
@@ -217,6 +252,13 @@ static Hit closest_hit(BVH_PARAMETERS, Ray ray) {
         }
     }
     return hit;
+}
+
+// The weights of vertices 1 and 2 where a ray meets a triangle's plane.
+static float2 hit_weights(Ray ray, float3 vertex, float3 edge1, float3 edge2) {
+    const float3 a = vertex - ray.origin;
+    const float n = dot(ray.direction, cross(edge1, edge2));
+    return (float2)(dot(ray.direction, cross(edge2, a)), dot(ray.direction, cross(a, edge1))) / n;
 }
 
 #endif

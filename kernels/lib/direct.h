@@ -33,13 +33,16 @@ static Receiver make_receiver(__global const Surface* surface, __global const Ma
     return r;
 }
 
+// Where shadow rays start.
+static float3 shadow_origin(const Receiver* r) { return r->position + r->geometric * r->offset; }
+
 // f Le G, cd/m2, of a light (of its point u), without visibility; 0 if the light is behind the
 // surface. `shadow` gets the segment that has to be free.
 static float3 unshadowed(const Receiver* r, __global const Light* light, float2 u, Ray* shadow) {
     const LightSample s = sample_light(light, r->position, u);
     const float cosine = dot(r->normal, s.direction);
     if (cosine <= 0.0f || dot(r->geometric, s.direction) <= 0.0f) return (float3)(0.0f);
-    shadow->origin = r->position + r->geometric * r->offset;
+    shadow->origin = shadow_origin(r);
     shadow->direction = s.infinite ? s.direction : s.target - shadow->origin;
     shadow->end = s.infinite ? INFINITY : 1.0f;
     return brdf(r->material, r->normal, s.direction, r->to_camera) * s.emitted * cosine;

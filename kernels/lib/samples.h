@@ -1,52 +1,59 @@
 // SPDX-License-Identifier: MIT
-// Stage samples: the estimator of paper eq. (2), shared by the samplers that draw lights one by
-// one.
+// Stage samples: draws the light samples of paper eq. (2), shared by the samplers that draw lights
+// one by one. Stage shadows traces their rays, samples.cl adds them up.
 //
 // A sampler's file includes lib/draw.h, defines SAMPLER_PARAMETERS and SAMPLER_ARGUMENTS (the
 // buffers it needs, each after a comma) and choose_light(), and then includes this file.
 #include "lib/direct.h"
 #include "lib/random.h"
-#include "lib/sum.h"
+#include "lib/rays.h"
 #include "lib/tiles.h"
 
-// Adds light samples first_sample to end_sample of sample_count to estimates[item].rgb, cd/m2, and
-// their shadow rays to its w; the sample at 0 starts the sums, to which residuals[item] belongs
-// (lib/sum.h). Neighbouring samples that are the same point share a shadow ray.
-KERNEL void samples_draw(Tiles tiles, Camera camera, BVH_PARAMETERS,
-                         __global const Surface* surfaces, __global const Material* materials,
-                         __global const Light* lights, uint light_count SAMPLER_PARAMETERS,
-                         uint pixel_sample, uint seed, uint first_sample, uint end_sample,
-                         uint sample_count, __global float4* estimates,
-                         __global float4* residuals) {
+// Light samples first_sample to end_sample, at most 16, of sample_count: packet `item` of the rays,
+// and values[48 * item + 16 * channel + lane], what each contributes where nothing is in its way,
+// cd/m2. Neighbouring samples that are the same point share a ray, samples without a value have
+// none.
+KERNEL void samples_draw(Tiles tiles, Camera camera, __global const Surface* surfaces,
+                         __global const Material* materials, __global const Light* lights,
+                         uint light_count SAMPLER_PARAMETERS, uint pixel_sample, uint seed,
+                         uint first_sample, uint end_sample, uint sample_count,
+                         __global float4* origins, __global float* rays, __global float* values) {
     const uint item = get_global_id(0);
-    if (!item_in_image(tiles, item)) return;
-    float4 sum = first_sample == 0u ? (float4)(0.0f) : estimates[item];
-    float4 residual = first_sample == 0u ? (float4)(0.0f) : residuals[item];
-    if (!surface_missed(surfaces + item)) {
+    if (item >= tiles.count * tiles.size * tiles.size) return;
+    uint lane = 0u;
+    if (item_in_image(tiles, item) && !surface_missed(surfaces + item)) {
         const Receiver receiver = make_receiver(surfaces + item, materials, camera);
         const uint2 pixel = item_pixel(tiles, item);
+        __global float* value_lanes = values + 48 * (ulong)item;
         uint last = ~0u;
-        float3 value = (float3)(0.0f);
+        bool lit = false;
+        float3 last_value = (float3)(0.0f);
         for (uint sample = first_sample; sample < end_sample; ++sample) {
             const uint4 bits =
                 random_bits(pixel.y * tiles.width + pixel.x, pixel_sample, sample, seed);
             const Choice choice =
                 choose_light(item, sample, sample_count, bits.x, light_count SAMPLER_ARGUMENTS);
             if (choice.weight == 0.0f) continue;
-            float rays = 0.0f;
-            if (choice.light != last || !is_single_point(lights + choice.light)) {
-                const float2 u = (float2)(unit_float(bits.y), unit_float(bits.z));
-                Ray shadow;
-                value = unshadowed(&receiver, lights + choice.light, u, &shadow) * choice.weight;
-                if (any(value != 0.0f)) {
-                    rays = 1.0f;
-                    if (occluded(BVH_ARGUMENTS, shadow)) value = (float3)(0.0f);
-                }
-                last = choice.light;
+            if (choice.light == last && is_single_point(lights + choice.light)) {
+                if (!lit) continue;
+                value_lanes[lane - 1u] += last_value.x;
+                value_lanes[lane + 15u] += last_value.y;
+                value_lanes[lane + 31u] += last_value.z;
+                continue;
             }
-            add_compensated(&sum, &residual, (float4)(value, rays));
+            const float2 u = (float2)(unit_float(bits.y), unit_float(bits.z));
+            Ray shadow;
+            last_value = unshadowed(&receiver, lights + choice.light, u, &shadow) * choice.weight;
+            last = choice.light;
+            lit = any(last_value != 0.0f);
+            if (!lit) continue;
+            put_ray(rays, item, lane, shadow);
+            value_lanes[lane] = last_value.x;
+            value_lanes[lane + 16u] = last_value.y;
+            value_lanes[lane + 32u] = last_value.z;
+            if (lane == 0u) origins[item] = (float4)(shadow.origin, 0.0f);
+            ++lane;
         }
     }
-    estimates[item] = sum;
-    residuals[item] = residual;
+    for (; lane < 16u; ++lane) RAY_END(rays, item, lane) = 0.0f;
 }

@@ -95,7 +95,8 @@ void make_dragon(GltfWriter& out, const BuiltinOptions& options) {
         light.add_quad({corners[i].x, 2.38f, corners[i].y}, {0.5f, 0, 0}, {0, 0, 0.5f});
         out.add_mesh("light", light, out.add_emitter(colors[i]));
     }
-    out.add_camera("front", {0, 1, 4.4f}, {0, 0.75f, 0}, 0.6f, 1);
+    out.add_camera("far", {0, 1, 4.4f}, {0, 0.75f, 0}, 0.6f, 1);
+    out.add_camera("close", {0.1f, 0.8f, 1.5f}, {0, 0.5f, 0}, 0.6f, 1);
     out.set_emitter_points(100);
 }
 

@@ -1,0 +1,269 @@
+// SPDX-License-Identifier: MIT
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "bench/traversal.hpp"
+#include "clock.hpp"
+#include "commands/commands.hpp"
+#include "error.hpp"
+#include "output/progress.hpp"
+#include "output/write_file.hpp"
+#include "scene/builtin/builtin.hpp"
+#include "stages/gbuffer.hpp"
+#include "verify/verify.hpp"
+
+namespace manylight {
+namespace {
+
+using nlohmann::json;
+
+constexpr double most_differences = 1e-4;  // of the rays that the reference judges
+constexpr unsigned builds = 3;
+
+// The dragon's room, with the mesh if one is given.
+LoadedScene load_room(const BenchArguments& arguments) {
+    SceneArguments scene = arguments.scene;
+    const std::filesystem::path path =
+        std::filesystem::temp_directory_path() / fmt::format("manylight-bench-{}.glb", getpid());
+    make_builtin("dragon", {.lights = 0, .mesh = arguments.mesh}).write(path.string());
+    scene.file = path.string();
+    scene.camera = arguments.view;
+    LoadedScene loaded = load(scene);
+    std::filesystem::remove(path);
+    loaded.scene.file = arguments.mesh.empty() ? "dragon" : "dragon with " + arguments.mesh;
+    return loaded;
+}
+
+double rate(std::size_t rays, const TracingResult& tracing) {
+    return static_cast<double>(rays) / quartiles(tracing.seconds).median / 1e6;
+}
+
+// How many times as fast one way is as another, round by round.
+Quartiles ratio(const TracingResult& of, const TracingResult& to) {
+    std::vector<double> paired;
+    for (std::size_t i = 0; i < of.seconds.size(); ++i)
+        paired.push_back(to.seconds[i] / of.seconds[i]);
+    return quartiles(paired);
+}
+
+void check_hits(const RaySetResult& set, const TracingResult& tracing) {
+    if (static_cast<double>(tracing.differences) >
+        most_differences * static_cast<double>(set.judged))
+        throw RuntimeError("{}, {}: {} of {} rays differ from the reference: no figures", set.name,
+                           tracing.name, tracing.differences, set.judged);
+}
+
+json to_json(const RaySetResult& set, const TracingResult& tracing) {
+    const Quartiles seconds = quartiles(tracing.seconds);
+    const auto mega = static_cast<double>(set.rays) / 1e6;
+    return {{"mrays_per_s", mega / seconds.median},
+            {"quartiles", {mega / seconds.upper, mega / seconds.lower}},
+            {"differences", tracing.differences}};
+}
+
+void print(const RaySetResult& set, const TracingResult& used) {
+    fmt::print("\n{}: {} rays, {} of them judged by the reference\n", set.name, set.rays,
+               set.judged);
+    for (const auto* list : {&set.kernels, &set.embree})
+        for (const TracingResult& tracing : *list) {
+            fmt::print("  {:<28}{:8.2f} Mrays/s", tracing.name, rate(set.rays, tracing));
+            if (list == &set.embree) {
+                const Quartiles r = ratio(used, tracing);
+                fmt::print("   ours / this {:.2f} ({:.2f} to {:.2f})", r.median, r.lower, r.upper);
+            }
+            fmt::print("\n");
+        }
+}
+
+void add_ratios(const RaySetResult& set, const TracingResult& used, json& ratios) {
+    if (set.embree.empty()) return;
+    const TracingResult& best = *std::ranges::min_element(
+        set.embree, {}, [](const TracingResult& t) { return quartiles(t.seconds).median; });
+    const Quartiles single = ratio(used, set.embree.front());
+    const Quartiles over = ratio(used, best);
+    ratios[set.name] = {{"over_single", single.median},
+                        {"over_single_quartiles", {single.lower, single.upper}},
+                        {"over_best", over.median},
+                        {"over_best_quartiles", {over.lower, over.upper}},
+                        {"best", best.name}};
+}
+
+// Builds both BVHs in turn; the last ones are kept.
+WideBvh measure_builds(const LoadedScene& loaded, const BenchArguments& arguments, unsigned lanes,
+                       unsigned threads, std::optional<EmbreeScene>& embree, json& out) {
+    WideBvh bvh;
+    std::vector<double> ours;
+    std::vector<double> theirs;
+    for (unsigned i = 0; i < builds; ++i) {
+        const auto start = Clock::now();
+        bvh = build_wide_bvh(loaded.scene, arguments.bvh_width ? arguments.bvh_width : lanes,
+                             arguments.bvh_block ? arguments.bvh_block : lanes,
+                             reach_of(loaded.scene, loaded.camera));
+        ours.push_back(seconds_since(start));
+        if (!EmbreeScene::available()) continue;
+        embree.emplace(loaded.scene, threads);
+        theirs.push_back(embree->build_seconds());
+    }
+    const std::size_t bytes = (bvh.nodes.size() + bvh.blocks.size()) * sizeof(float);
+    out["bvh"] = {{"width", bvh.width},
+                  {"block", bvh.block},
+                  {"build_s", quartiles(ours).median},
+                  {"memory_bytes", bytes}};
+    fmt::print("BVH of width {}, blocks of {}: {:.3f} s, {:.1f} MiB\n", bvh.width, bvh.block,
+               quartiles(ours).median, static_cast<double>(bytes) / (1 << 20));
+    if (embree) {
+        out["embree"] = {{"build_s", quartiles(theirs).median},
+                         {"memory_bytes", embree->memory_bytes()}};
+        fmt::print("Embree's, of medium quality: {:.3f} s, {:.1f} MiB\n", quartiles(theirs).median,
+                   static_cast<double>(embree->memory_bytes()) / (1 << 20));
+    } else {
+        fmt::print("built without Embree: nothing to compare with\n");
+    }
+    return bvh;
+}
+
+void bench_traversal(const LoadedScene& loaded, Device& device, const BenchArguments& arguments,
+                     json& out) {
+    const unsigned threads =
+        arguments.scene.threads ? arguments.scene.threads : std::thread::hardware_concurrency();
+    std::optional<EmbreeScene> embree;
+    const WideBvh bvh =
+        measure_builds(loaded, arguments, lanes_for(device.info()), threads, embree, out);
+    const DeviceScene scene = upload_scene(device, loaded.scene, bvh, loaded.camera);
+    const Tiles tiles = all_tiles(loaded.width, loaded.height, 32);
+    Surface missed{};
+    missed.position.w = -1;  // where a tile reaches beyond the image
+    Buffer<Surface> surfaces = device.upload(std::vector<Surface>(item_count(tiles), missed));
+    GBufferStage(device, scene).trace(tiles, {}, surfaces);
+    const std::vector<Surface> hits = surfaces.download();
+    const reference::Tracer tracer(loaded.scene);
+    const DeviceTracer kernels(device, scene);
+    const float reach = reach_of(loaded.scene, loaded.camera);
+    for (const RaySet& set :
+         {primary_rays(loaded.camera, tiles), incoherent_shadow_rays(loaded.scene, hits),
+          coherent_shadow_rays(loaded.scene, hits)}) {
+        if (set.ray_count() == 0) continue;
+        const std::vector<Tracing> theirs =
+            embree ? embree->interfaces(set.any_hit) : std::vector<Tracing>{};
+        const double steps = (arguments.rounds + 1.0) * (2 + static_cast<double>(theirs.size()));
+        double done = 0;
+        const RaySetResult result = [&] {
+            Progress progress("tracing " + set.name);
+            return measure(set, tracer, reach, kernels.tracings(set.any_hit), theirs,
+                           arguments.rounds, [&] { progress.set(++done / steps); });
+        }();
+        const TracingResult& used = result.kernels[scene.packets ? 0 : 1];
+        json& rays = out["rays"][set.name];
+        rays["count"] = result.rays;
+        for (const auto* list : {&result.kernels, &result.embree})
+            for (const TracingResult& tracing : *list) {
+                check_hits(result, tracing);
+                rays[tracing.name] = to_json(result, tracing);
+            }
+        print(result, used);
+        add_ratios(result, used, out["ratios"]);
+    }
+}
+
+void bench_stages(const LoadedScene& loaded, const Device& device, const BenchArguments& arguments,
+                  json& out) {
+    VerifyOptions verify_options;
+    const double scale = 96.0 / std::max(loaded.width, loaded.height);
+    verify_options.width = std::max(1u, static_cast<unsigned>(loaded.width * scale));
+    verify_options.height = std::max(1u, static_cast<unsigned>(loaded.height * scale));
+    const Camera small = make_camera(loaded.view, verify_options.width, verify_options.height);
+    for (const Check& check : Verifier(device, loaded.scene, small, verify_options).all())
+        if (!check.passed())
+            throw RuntimeError("{}: differs from the reference ({}): no figures", check.stage,
+                               check.first_failure);
+    RenderOptions options;
+    options.sampler = arguments.sampler;
+    options.light_samples = arguments.light_samples;
+    options.spp = 1;
+    options.width = loaded.width;
+    options.height = loaded.height;
+    const unsigned lanes = lanes_for(device.info());
+    const WideBvh bvh =
+        build_wide_bvh(loaded.scene, lanes, lanes, reach_of(loaded.scene, loaded.camera));
+    std::map<std::string, std::vector<double>> seconds;
+    std::vector<double> totals;
+    std::size_t shadow_rays = 0;
+    Device measured = device;
+    for (unsigned round = 0; round <= arguments.rounds; ++round) {
+        const std::map<std::string, double> before = measured.stage_seconds();
+        Frame frame(measured, loaded.scene, bvh, loaded.camera, options);
+        frame.prepare();
+        Progress quiet("", true);
+        const FrameResult result = frame.render(quiet);
+        if (round == 0) continue;  // compiles
+        shadow_rays = result.shadow_rays;
+        double total = 0;
+        for (const auto& [stage, after] : measured.stage_seconds()) {
+            const double took = after - (before.contains(stage) ? before.at(stage) : 0);
+            if (took <= 0) continue;
+            seconds[stage].push_back(took);
+            total += took;
+        }
+        totals.push_back(total);
+    }
+    const double total = quartiles(totals).median;
+    fmt::print("\nstages, {}, {} light samples, 1 spp, {} x {} (all verified)\n", options.sampler,
+               options.light_samples, loaded.width, loaded.height);
+    for (const auto& [stage, times] : seconds) {
+        const double median = quartiles(times).median;
+        fmt::print("  {:<18}{:9.4f} s {:6.1f} %\n", stage, median, 100 * median / total);
+        out["stages"][stage] = {{"seconds", median}, {"share", median / total}};
+    }
+    const double shadow_rate =
+        static_cast<double>(shadow_rays) / quartiles(seconds["shadows"]).median / 1e6;
+    fmt::print("  {:<18}{:9.4f} s\n  shadow rays: {}, {:.2f} Mrays/s\n", "all", total, shadow_rays,
+               shadow_rate);
+    out["stages"]["shadow_mrays_per_s"] = shadow_rate;
+}
+
+}  // namespace
+
+int run_bench(const BenchArguments& arguments) {
+    const bool traversal = arguments.what == "traversal";
+    const bool stages = arguments.what == "stages";
+    if (!traversal && !stages && !arguments.mesh.empty())
+        throw InputError(
+            "--mesh {}: goes with 'bench traversal' or 'bench stages', not with a file",
+            arguments.mesh);
+    if (!arguments.json.empty()) check_output("--json", arguments.json);
+    BenchArguments with_file = arguments;
+    with_file.scene.file = arguments.what;
+    const LoadedScene loaded = traversal || stages ? load_room(arguments) : load(with_file.scene);
+    if (loaded.scene.lights.empty())
+        throw InputError("{}: has no lights: there are no shadow rays to measure",
+                         loaded.scene.file);
+    Device device = Device::open(arguments.scene.device, arguments.scene.threads);
+    fmt::print("{}: {} triangles, {} lights, camera '{}', {} x {}\n{} ({})\n", loaded.scene.file,
+               loaded.scene.triangle_count(), loaded.scene.lights.size(), loaded.view.name,
+               loaded.width, loaded.height, device.info().name, device.info().platform);
+    json out = {{"version", MANYLIGHT_VERSION},
+                {"scene", loaded.scene.file},
+                {"view", loaded.view.name},
+                {"triangles", loaded.scene.triangle_count()},
+                {"lights", loaded.scene.lights.size()},
+                {"width", loaded.width},
+                {"height", loaded.height},
+                {"device", device.info().name},
+                {"platform", device.info().platform},
+                {"rounds", arguments.rounds}};
+    if (!stages) bench_traversal(loaded, device, arguments, out);
+    if (!traversal) bench_stages(loaded, device, arguments, out);
+    if (!arguments.json.empty()) {
+        const std::string text = out.dump(2, ' ', false, json::error_handler_t::replace) + "\n";
+        write_file(arguments.json, std::as_bytes(std::span(text)));
+        fmt::print("\nwrote {}\n", arguments.json);
+    }
+    return 0;
+}
+
+}  // namespace manylight

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: MIT
+// Stage shadows: finds the rays (lib/rays.h) that something is in the way of.
+#include "lib/packet.h"
+#include "lib/rays.h"
+
+// One packet per work-item.
+KERNEL void shadows_trace_packets(BVH_PARAMETERS, __global const float4* origins,
+                                  __global float16* rays, uint packet_count) {
+    const uint i = get_global_id(0);
+    if (i >= packet_count) return;
+    __global float16* rows = rays + 4 * (ulong)i;
+    Packet packet = make_packet(origins[i].xyz, rows[0], rows[1], rows[2], rows[3]);
+    if (occlude_packet(BVH_ARGUMENTS, &packet)) rows[3] = packet.end;
+}
+
+// The same, one ray per work-item.
+KERNEL void shadows_trace_rays(BVH_PARAMETERS, __global const float4* origins, __global float* rays,
+                               uint packet_count) {
+    const uint i = get_global_id(0);
+    if (i / 16u >= packet_count) return;
+    __global float* row = rays + 64 * (ulong)(i / 16u) + i % 16u;
+    const Ray ray = {origins[i / 16u].xyz, (float3)(row[0], row[16], row[32]), row[48]};
+    if (ray.end > 0.0f && occluded(BVH_ARGUMENTS, ray)) row[48] = -1.0f;
+}
