@@ -203,6 +203,25 @@ class CommandTest(unittest.TestCase):
         self.assertIn("computes correctly", run.stdout)
         self.assertNotIn("FAIL", run.stdout)
 
+    def test_bench(self):
+        run = self.run_program("bench", SCENES / "pinhole.glb", "--height", 48, "--rounds", 2,
+                               "--json", "b.json")
+        self.assertIn("shadow_incoherent", run.stdout)
+        figures = json.loads((self.folder / "b.json").read_text())
+        self.assertEqual(sorted(figures["rays"]), ["primary", "shadow_coherent", "shadow_incoherent"])
+        self.assertGreater(figures["rays"]["primary"]["packets"]["mrays_per_s"], 0)
+        self.assertGreater(figures["stages"]["shadows"]["seconds"], 0)
+        if "embree" in figures:
+            ratio = figures["ratios"]["shadow_incoherent"]
+            low, high = ratio["over_single_quartiles"]
+            self.assertTrue(low <= ratio["over_single"] <= high)
+            self.assertLessEqual(ratio["over_best"], ratio["over_single"] * 1.01)
+        self.refuse("bench", "none.glb", words=["none.glb"])
+        self.refuse("bench", SCENES / "pinhole.glb", "--mesh", "x.glb", words=["--mesh", "x.glb"])
+        self.refuse("bench", "traversal", "--view", "above", words=["--view", "above"])
+        self.refuse("bench", "traversal", "--json", "no/x.json", words=["--json", "no/x.json"])
+        self.assertEqual(self.files(), ["b.json"])
+
     def test_devices(self):
         run = self.run_program("devices")
         self.assertIn("0: ", run.stdout)

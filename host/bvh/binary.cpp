@@ -85,14 +85,14 @@ class Builder {
             centres.add(references_[i].centre);
         }
         const std::size_t count = end - begin;
-        if (count <= leaf_size_ && !is_worth_splitting(begin, end, node.bounds, centres)) {
+        const std::size_t middle = count <= leaf_size_
+                                       ? split_leaf(begin, end, node.bounds, centres)
+                                       : split_node(begin, end, centres, depth);
+        if (middle == end) {
             node.first = static_cast<std::uint32_t>(begin);
             node.count = static_cast<std::uint32_t>(count);
             return;
         }
-        const std::size_t middle = count <= leaf_size_
-                                       ? partition<few_bins>(begin, end, centres, depth)
-                                       : partition<bin_count>(begin, end, centres, depth);
         const std::uint32_t left = next_node_.fetch_add(2);
         node.first = left;
         node.right = left + 1;
@@ -104,40 +104,50 @@ class Builder {
         fork ? task.get() : right();
     }
 
-    // Whether two blocks that hold a block's worth of triangles are met so much less often than
-    // one: walls of a room, say, in whose middle there is nothing.
-    [[nodiscard]] bool is_worth_splitting(std::size_t begin, std::size_t end, const Bounds& bounds,
-                                          const Bounds& centres) const {
-        if (end - begin < 2) return false;
-        const Split split = find_split<few_bins>(begin, end, Binning<few_bins>(centres));
-        return split.axis >= 0 && split.cost * splitting_cost < half_area(bounds);
+    // Puts the left side's references first and returns where the right side's begin; `end` if one
+    // block is better than two: if those would not be met so much less often, as the walls of a
+    // room are, in whose middle there is nothing. Only the longest axis is tried.
+    std::size_t split_leaf(std::size_t begin, std::size_t end, const Bounds& bounds,
+                           const Bounds& centres) {
+        const glm::vec3 extent = centres.upper - centres.lower;
+        const int axis =
+            extent.x > extent.y ? (extent.x > extent.z ? 0 : 2) : (extent.y > extent.z ? 1 : 2);
+        const Binning<few_bins> binning(centres);
+        const Split split = find_split(begin, end, binning, axis, axis + 1);
+        if (split.axis < 0 || split.cost * splitting_cost >= half_area(bounds)) return end;
+        return partition(begin, end, binning, split);
     }
 
-    // Puts the left side's references first and returns where the right side's begin.
-    template <int Bins>
-    std::size_t partition(std::size_t begin, std::size_t end, const Bounds& centres, int depth) {
-        const Binning<Bins> binning(centres);
-        const Split split = depth < deepest_sah ? find_split<Bins>(begin, end, binning) : Split{};
-        const auto first = references_.begin() + static_cast<std::ptrdiff_t>(begin);
-        const auto last = references_.begin() + static_cast<std::ptrdiff_t>(end);
+    // The same for references that need more than one block.
+    std::size_t split_node(std::size_t begin, std::size_t end, const Bounds& centres, int depth) {
+        const Binning<bin_count> binning(centres);
+        const Split split = depth < deepest_sah ? find_split(begin, end, binning, 0, 3) : Split{};
         if (split.axis < 0) return begin + (end - begin) / 2;  // coincident centres: any halves do
-        const auto middle = std::partition(first, last, [&](const Reference& r) {
-            return binning.bin(r, split.axis) < split.bin;
-        });
-        return static_cast<std::size_t>(middle - references_.begin());
+        return partition(begin, end, binning, split);
     }
 
     template <int Bins>
-    Split find_split(std::size_t begin, std::size_t end, const Binning<Bins>& binning) const {
+    std::size_t partition(std::size_t begin, std::size_t end, const Binning<Bins>& binning,
+                          const Split& split) {
+        const auto first = references_.begin();
+        const auto middle = std::partition(
+            first + static_cast<std::ptrdiff_t>(begin), first + static_cast<std::ptrdiff_t>(end),
+            [&](const Reference& r) { return binning.bin(r, split.axis) < split.bin; });
+        return static_cast<std::size_t>(middle - first);
+    }
+
+    template <int Bins>
+    Split find_split(std::size_t begin, std::size_t end, const Binning<Bins>& binning,
+                     int first_axis, int end_axis) const {
         std::array<std::array<Bin, Bins>, 3> bins;
         for (std::size_t i = begin; i < end; ++i)
-            for (int axis = 0; axis < 3; ++axis) {
+            for (int axis = first_axis; axis < end_axis; ++axis) {
                 Bin& bin = bins[axis][binning.bin(references_[i], axis)];
                 add(bin.bounds, references_[i].bounds);
                 ++bin.count;
             }
         Split best;
-        for (int axis = 0; axis < 3; ++axis)
+        for (int axis = first_axis; axis < end_axis; ++axis)
             if (binning.scale[axis] > 0) sweep(bins[axis], axis, best);
         return best;
     }

@@ -23,7 +23,7 @@ typedef JOIN(float, BVH_BLOCK) float_k;
 typedef JOIN(int, BVH_BLOCK) int_k;
 
 // A set of lanes as one integer, a bit per lane: lanes_N(comparison), lowest(set).
-#if defined(__AVX512DQ__) && defined(__AVX512VL__)
+#if defined(__AVX512DQ__) && defined(__AVX512VL__) && !defined(PORTABLE_LANES)
 #define lanes_4(comparison) (uint)(uchar) __builtin_ia32_cvtd2mask128(comparison)
 #define lanes_8(comparison) (uint)(uchar) __builtin_ia32_cvtd2mask256(comparison)
 #define lanes_16(comparison) (uint)(ushort) __builtin_ia32_cvtd2mask512(comparison)
@@ -117,9 +117,10 @@ static int_w enter_children(__global const float_w* node, const Prepared* s, flo
 // its own edge: as 1 - u - v the last would lose its precision in slivers.
 typedef struct PreparedBlock {
     float_k n[3], q[3], r[3], s[3];
-    float_k t;                             // t times the determinant
-    float_k margin_u, margin_v, margin_w;  // of the weights times the determinant, for directions
-                                           // whose largest part is 1
+    float_k t;  // t times the determinant
+    // For directions whose largest part is 1: by how much the weights times the determinant may be
+    // negative, and below what determinant the ray lies in the triangle's plane.
+    float_k margin_u, margin_v, margin_w, least_n;
 } PreparedBlock;
 
 static PreparedBlock prepare_block(__global const float_k* block, float3 origin) {
@@ -146,6 +147,7 @@ static PreparedBlock prepare_block(__global const float_k* block, float3 origin)
     b.margin_u = far * block[11];
     b.margin_v = far * block[10];
     b.margin_w = fma(block[10], MARGIN_SCALE, far) * block[12];
+    b.least_n = max(max(fabs(b.n[0]), fabs(b.n[1])), fabs(b.n[2])) * MARGIN_SCALE;
     return b;
 }
 
@@ -171,7 +173,8 @@ static BlockHits hit_block(const PreparedBlock* b, float3 direction, float end) 
     const float_k w = as_float_k(as_int_k(s) ^ sign);
     const float_k inside =
         min(min(fma(b->margin_u, size, u), fma(b->margin_v, size, v)), fma(b->margin_w, size, w));
-    hits.hit = (inside >= 0.0f) & (hits.t > 0.0f) & (hits.t < hits.n * end);
+    hits.hit =
+        (inside >= 0.0f) & (hits.n > b->least_n * size) & (hits.t > 0.0f) & (hits.t < hits.n * end);
     return hits;
 }
 

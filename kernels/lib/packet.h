@@ -133,7 +133,8 @@ static int16 hit_triangle(const PreparedBlock* b, uint lane, const Packet* p) {
     const float16 w = as_float16(as_int16(s) ^ sign);
     const float16 inside =
         min(min(fma(p->size, ROW(13), u), fma(p->size, ROW(14), v)), fma(p->size, ROW(15), w));
-    return (inside >= 0.0f) & (t > 0.0f) & (t < p->end * determinant);
+    return (inside >= 0.0f) & (determinant > ROW(16) * p->size) & (t > 0.0f) &
+           (t < p->end * determinant);
 #undef ROW
 }
 
