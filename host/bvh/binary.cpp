@@ -5,35 +5,52 @@
 #include <array>
 #include <atomic>
 #include <future>
+#include <memory>
 #include <thread>
 
 namespace manylight {
 namespace {
 
+constexpr float infinity = std::numeric_limits<float>::infinity();
 constexpr int bin_count = 32;
 constexpr int few_bins = 8;                // for no more triangles than a leaf holds
 constexpr float splitting_cost = 1.2f;     // of one more child, as a factor; measured
 constexpr int deepest_sah = 48;            // below, halves: bounds the depth whatever the input
 constexpr std::size_t task_size = 32'768;  // triangles worth a thread of their own
 
+// Bounds whose coordinates fill a vector register each; the fourth is unused. Selections are
+// written out, since compilers make one instruction of four of them.
+struct Box {
+    std::array<float, 4> lower{infinity, infinity, infinity, infinity};
+    std::array<float, 4> upper{-infinity, -infinity, -infinity, -infinity};
+
+    void add(const std::array<float, 4>& low, const std::array<float, 4>& high) {
+        for (int k = 0; k < 4; ++k) lower[k] = low[k] < lower[k] ? low[k] : lower[k];
+        for (int k = 0; k < 4; ++k) upper[k] = high[k] > upper[k] ? high[k] : upper[k];
+    }
+    void add(const Box& b) { add(b.lower, b.upper); }
+};
+
 struct Reference {
-    Bounds bounds;
-    glm::vec3 centre;
+    Box box;
+    std::array<float, 4> centre;
     std::uint32_t triangle;
 };
 
-float half_area(const Bounds& b) {
-    const glm::vec3 d = b.upper - b.lower;
-    return b.empty() ? 0 : d.x * d.y + d.y * d.z + d.z * d.x;
+float half_area(const Box& b) {
+    if (b.lower[0] > b.upper[0]) return 0;
+    const float x = b.upper[0] - b.lower[0];
+    const float y = b.upper[1] - b.lower[1];
+    const float z = b.upper[2] - b.lower[2];
+    return x * y + y * z + z * x;
 }
 
-void add(Bounds& into, const Bounds& b) {
-    into.lower = glm::min(into.lower, b.lower);
-    into.upper = glm::max(into.upper, b.upper);
+Bounds to_bounds(const Box& b) {
+    return {{b.lower[0], b.lower[1], b.lower[2]}, {b.upper[0], b.upper[1], b.upper[2]}};
 }
 
 struct Bin {
-    Bounds bounds;
+    Box bounds;
     std::uint32_t count = 0;
 };
 
@@ -46,8 +63,8 @@ struct Split {
 // Maps centres to bins along each axis.
 template <int Bins>
 struct Binning {
-    glm::vec3 lower, scale;
-    explicit Binning(const Bounds& centres) : lower(centres.lower), scale(0) {
+    std::array<float, 4> lower, scale{};
+    explicit Binning(const Box& centres) : lower(centres.lower) {
         for (int axis = 0; axis < 3; ++axis) {
             const float width = centres.upper[axis] - lower[axis];
             if (width > 0) scale[axis] = Bins * 0.9999f / width;
@@ -63,31 +80,37 @@ class Builder {
   public:
     Builder(std::vector<Reference> references, unsigned leaf_size)
         : references_(std::move(references)), leaf_size_(leaf_size) {
-        bvh_.nodes.resize(2 * references_.size() - 1);
+        most_nodes_ = 2 * references_.size() - 1;
+        nodes_ = std::allocator<BinaryNode>().allocate(most_nodes_);
     }
+    ~Builder() { std::allocator<BinaryNode>().deallocate(nodes_, most_nodes_); }
+    Builder(const Builder&) = delete;
+    Builder& operator=(const Builder&) = delete;
 
     BinaryBvh build() {
         const unsigned threads = std::max(std::thread::hardware_concurrency(), 1u);
         while ((1u << task_depth_) < 4 * threads) ++task_depth_;
         build_node(0, 0, references_.size(), 0);
-        bvh_.nodes.resize(next_node_);
-        bvh_.triangles.reserve(references_.size());
-        for (const Reference& r : references_) bvh_.triangles.push_back(r.triangle);
-        return std::move(bvh_);
+        BinaryBvh bvh;
+        bvh.nodes.assign(nodes_, nodes_ + next_node_);
+        bvh.triangles.reserve(references_.size());
+        for (const Reference& r : references_) bvh.triangles.push_back(r.triangle);
+        return bvh;
     }
 
   private:
     void build_node(std::uint32_t index, std::size_t begin, std::size_t end, int depth) {
-        BinaryNode& node = bvh_.nodes[index];
-        Bounds centres;
+        BinaryNode& node = *std::construct_at(nodes_ + index);
+        Box box;
+        Box centres;
         for (std::size_t i = begin; i < end; ++i) {
-            add(node.bounds, references_[i].bounds);
-            centres.add(references_[i].centre);
+            box.add(references_[i].box);
+            centres.add(references_[i].centre, references_[i].centre);
         }
+        node.bounds = to_bounds(box);
         const std::size_t count = end - begin;
-        const std::size_t middle = count <= leaf_size_
-                                       ? split_leaf(begin, end, node.bounds, centres)
-                                       : split_node(begin, end, centres, depth);
+        const std::size_t middle = count <= leaf_size_ ? split_leaf(begin, end, box, centres)
+                                                       : split_node(begin, end, centres, depth);
         if (middle == end) {
             node.first = static_cast<std::uint32_t>(begin);
             node.count = static_cast<std::uint32_t>(count);
@@ -107,11 +130,12 @@ class Builder {
     // Puts the left side's references first and returns where the right side's begin; `end` if one
     // block is better than two: if those would not be met so much less often, as the walls of a
     // room are, in whose middle there is nothing. Only the longest axis is tried.
-    std::size_t split_leaf(std::size_t begin, std::size_t end, const Bounds& bounds,
-                           const Bounds& centres) {
-        const glm::vec3 extent = centres.upper - centres.lower;
-        const int axis =
-            extent.x > extent.y ? (extent.x > extent.z ? 0 : 2) : (extent.y > extent.z ? 1 : 2);
+    std::size_t split_leaf(std::size_t begin, std::size_t end, const Box& bounds,
+                           const Box& centres) {
+        int axis = 0;
+        for (int k = 1; k < 3; ++k)
+            if (centres.upper[k] - centres.lower[k] > centres.upper[axis] - centres.lower[axis])
+                axis = k;
         const Binning<few_bins> binning(centres);
         const Split split = find_split(begin, end, binning, axis, axis + 1);
         if (split.axis < 0 || split.cost * splitting_cost >= half_area(bounds)) return end;
@@ -119,7 +143,7 @@ class Builder {
     }
 
     // The same for references that need more than one block.
-    std::size_t split_node(std::size_t begin, std::size_t end, const Bounds& centres, int depth) {
+    std::size_t split_node(std::size_t begin, std::size_t end, const Box& centres, int depth) {
         const Binning<bin_count> binning(centres);
         const Split split = depth < deepest_sah ? find_split(begin, end, binning, 0, 3) : Split{};
         if (split.axis < 0) return begin + (end - begin) / 2;  // coincident centres: any halves do
@@ -143,7 +167,7 @@ class Builder {
         for (std::size_t i = begin; i < end; ++i)
             for (int axis = first_axis; axis < end_axis; ++axis) {
                 Bin& bin = bins[axis][binning.bin(references_[i], axis)];
-                add(bin.bounds, references_[i].bounds);
+                bin.bounds.add(references_[i].box);
                 ++bin.count;
             }
         Split best;
@@ -153,7 +177,7 @@ class Builder {
     }
 
     // The cost of a side is its area times the blocks that its triangles fill.
-    [[nodiscard]] float cost(const Bounds& bounds, std::uint32_t count) const {
+    [[nodiscard]] float cost(const Box& bounds, std::uint32_t count) const {
         return half_area(bounds) * static_cast<float>((count + leaf_size_ - 1) / leaf_size_);
     }
 
@@ -162,14 +186,14 @@ class Builder {
         std::array<float, Bins> right_cost{};
         Bin right;
         for (int i = Bins - 1; i > 0; --i) {
-            add(right.bounds, bins[i].bounds);
+            right.bounds.add(bins[i].bounds);
             right.count += bins[i].count;
             right_cost[i] = right.count == 0 ? std::numeric_limits<float>::infinity()
                                              : cost(right.bounds, right.count);
         }
         Bin left;
         for (int i = 1; i < static_cast<int>(Bins); ++i) {
-            add(left.bounds, bins[i - 1].bounds);
+            left.bounds.add(bins[i - 1].bounds);
             left.count += bins[i - 1].count;
             if (left.count == 0) continue;
             const float total = cost(left.bounds, left.count) + right_cost[i];
@@ -180,7 +204,8 @@ class Builder {
     std::vector<Reference> references_;
     unsigned leaf_size_;
     int task_depth_ = 0;
-    BinaryBvh bvh_;
+    std::size_t most_nodes_;
+    BinaryNode* nodes_;  // [most_nodes_]; far fewer are made, and the others' memory is not touched
     std::atomic<std::uint32_t> next_node_ = 1;
 };
 
@@ -192,9 +217,12 @@ BinaryBvh build_binary_bvh(const Scene& scene, unsigned leaf_size) {
     for (std::size_t t = 0; t < scene.triangle_count(); ++t) {
         glm::vec3 v[3];
         Reference r;
-        for (int k = 0; k < 3; ++k) r.bounds.add(v[k] = scene.vertices[scene.indices[3 * t + k]]);
+        for (int k = 0; k < 3; ++k) {
+            v[k] = scene.vertices[scene.indices[3 * t + k]];
+            r.box.add({v[k].x, v[k].y, v[k].z, 0}, {v[k].x, v[k].y, v[k].z, 0});
+        }
         if (glm::cross(v[1] - v[0], v[2] - v[0]) == glm::vec3(0)) continue;
-        r.centre = r.bounds.lower * 0.5f + r.bounds.upper * 0.5f;
+        for (int k = 0; k < 4; ++k) r.centre[k] = r.box.lower[k] * 0.5f + r.box.upper[k] * 0.5f;
         r.triangle = static_cast<std::uint32_t>(t);
         references.push_back(r);
     }

@@ -119,6 +119,10 @@ WideBvh build_wide_bvh(const Scene& scene, unsigned width, unsigned block, float
                     -std::numeric_limits<float>::infinity());
         wide.blocks.assign(block_rows * block, 0.0f);
     } else {
+        const auto leaves = static_cast<std::size_t>(std::ranges::count_if(
+            binary.nodes, [](const BinaryNode& node) { return node.count > 0; }));
+        wide.blocks.reserve(leaves * block_rows * block);
+        wide.nodes.reserve(leaves * 7);  // about a node per `width` leaves
         stack = Collapser(scene, binary, wide, padding_scale * reach).collapse(0).second;
     }
     wide.stack = (stack + 31) / 32 * 32;
