@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Closest hits alone, for manylight bench and for tests; rays as in shadows.cl.
+// Closest hits alone, for manylight bench and for tests; rays as in lib/rays.h.
 #include "lib/packet.h"
 
 // triangles[16 * packet + lane], ~0 where nothing is hit; where something is, the ray's end becomes

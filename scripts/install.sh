@@ -2,9 +2,9 @@
 # Installs what building and running manylight needs on Debian 12; does nothing where all is there.
 #
 # usage: scripts/install.sh [--tests] [--no-intel]
-#   --tests     also what the tests need: GoogleTest, Python, Clang (to lint kernels), oiiotool, and
-#               Intel's OpenCL runtime for CPUs, where the processor is x86-64 (830 MB, into
-#               ~/.cache/manylight), so that two vendors' compilers run every kernel
+#   --tests     also what the tests need: GoogleTest, Embree (for manylight bench), Python, Clang (to
+#               lint kernels), and Intel's OpenCL runtime for CPUs, where the processor is x86-64
+#               (830 MB, into ~/.cache/manylight), so that two vendors' compilers run every kernel
 #   --no-intel  without Intel's runtime
 set -euo pipefail
 
@@ -25,7 +25,7 @@ packages=(
     libcli11-dev libfmt-dev
 )
 if $tests; then
-    packages+=(libgtest-dev python3 python3-venv clang-15)
+    packages+=(libgtest-dev libembree-dev python3 python3-venv clang-15)
 fi
 
 missing=()

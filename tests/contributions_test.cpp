@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "reference/contributions.hpp"
 
+#include <bit>
 #include <cstring>
 
 #include "support.hpp"
@@ -57,6 +58,44 @@ TEST(contributions, hidden_lights_are_negative) {
         EXPECT_EQ(totals[0].visible_count, 1u);
         EXPECT_EQ(totals[0].facing_count, 2u);
         EXPECT_EQ(totals[1].facing_count, 0u);
+    }
+}
+
+// GPUs trace single rays where CPUs trace packets: the same matrix, but for rays that graze edges.
+TEST(contributions, packets_and_single_rays_agree) {
+    const test::TestScene& s = test::scene_named("kinds");
+    const Tiles tiles = all_tiles(s.width, s.height, 8);
+    const auto lights = static_cast<uint>(s.scene.lights.size());
+    FOR_EACH_DEVICE(device) {
+        Device d = device;
+        const unsigned lanes = lanes_for(d.info());
+        const WideBvh bvh = build_wide_bvh(s.scene, lanes, lanes, reach_of(s.scene, s.camera));
+        DeviceScene uploaded = upload_scene(d, s.scene, bvh, s.camera);
+        std::vector<uint> items;  // that hit something
+        std::vector<float> values[2];
+        for (const bool packets : {true, false}) {
+            uploaded.packets = uploaded.primary_packets = packets;
+            Buffer<Surface> surfaces = d.allocate<Surface>(item_count(tiles));
+            GBufferStage(d, uploaded).trace(tiles, {}, surfaces);
+            const std::vector<Surface> found = surfaces.download();
+            if (items.empty())
+                for (uint i = 0; i < item_count(tiles); i += 3)
+                    if (found[i].position.w >= 0) items.push_back(i);
+            const auto rows = static_cast<uint>(items.size());
+            Matrix matrix(d, rows, lights);
+            ContributionStage(d, uploaded)
+                .evaluate(surfaces, d.upload(items), 0, rows, matrix, [](std::size_t) {});
+            for (const uint word : matrix.values.download())
+                values[packets].push_back(std::bit_cast<float>(word));
+        }
+        int different = 0;
+        int hidden = 0;
+        for (std::size_t i = 0; i < values[0].size(); ++i) {
+            different += std::abs(values[0][i] - values[1][i]) > 1e-4f * std::abs(values[0][i]);
+            hidden += values[0][i] < 0;
+        }
+        EXPECT_LE(different, static_cast<int>(values[0].size() / 500));
+        EXPECT_GT(hidden, 500);
     }
 }
 

@@ -168,7 +168,8 @@ TEST(shadows, hits_of_hard_sets_at_every_width) {
          {std::pair(4u, false), {8u, false}, {16u, false}, {4u, true}, {8u, true}, {16u, true}})
         for (const bool any_hit : {true, false}) {
             const RaySet set{"hard", any_hit, false, hard_packets(scene)};
-            for (const Tracing& tracing : tracer_on(device, scene, lanes, portable).tracings(any_hit)) {
+            for (const Tracing& tracing :
+                 tracer_on(device, scene, lanes, portable).tracings(any_hit)) {
                 const std::vector<float> found = trace(tracing, set);
                 int hits = 0;
                 for (std::size_t i = 0; i < found.size(); ++i) {

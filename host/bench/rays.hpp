@@ -13,7 +13,7 @@
 namespace manylight {
 
 /// 16 segments origin + t direction, 0 < t < end, world space; a lane whose end is not positive
-/// holds none. Lane by lane, as kernels/shadows.cl reads them.
+/// holds none. Lane by lane, as in kernels/lib/rays.h.
 struct RayPacket {
     glm::vec3 origin;
     std::array<float, 16> x, y, z, end;

@@ -17,8 +17,9 @@ struct WideBvh {
     /// nodes[(7 * node + row) * width + lane]: lower x y z, upper x y z, and the child as an int:
     /// a node, or ~(block index << 4 | triangles - 1).
     std::vector<float> nodes;
-    /// blocks[(10 * index + row) * block + lane]: vertices 0, 1, 2, each x y z, and the triangle's
-    /// index as an int.
+    /// blocks[(13 * index + row) * block + lane]: vertex 0, vertex 1 - vertex 0, vertex 2 - vertex
+    /// 0, each x y z; the triangle's index as an int; the largest coordinate of the edges from
+    /// vertex 0 to 1, 0 to 2, 1 to 2.
     std::vector<float> blocks;
 };
 

@@ -23,14 +23,13 @@ static Choice draw_from_cdf(__global const uint* cdf, uint light_count, uint i, 
     const uint total = cdf[light_count - 1u];
     if (total == 0u) return choice;
     const uint target = stratified_below(total, i, n, random);
-    uint first = 0u;  // the first light whose running sum exceeds the target lies in first..last
-    uint last = light_count - 1u;
-    while (first < last) {
-        const uint middle = (first + last) / 2u;
-        if (cdf[middle] > target)
-            last = middle;
-        else
-            first = middle + 1u;
+    // The first light whose running sum exceeds the target lies in first..first + count - 1. As
+    // many steps for every target, and no branch that depends on it.
+    uint first = 0u;
+    for (uint count = light_count; count > 1u;) {
+        const uint half_count = count / 2u;
+        first += cdf[first + half_count - 1u] <= target ? half_count : 0u;
+        count -= half_count;
     }
     const uint width = cdf[first] - (first == 0u ? 0u : cdf[first - 1u]);
     choice.light = first;
