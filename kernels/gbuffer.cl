@@ -6,11 +6,6 @@
 #include "shared/camera.h"
 #include "shared/surface.h"
 
-static float largest_coordinate(float3 v) {
-    const float3 a = fabs(v);
-    return max(max(a.x, a.y), a.z);
-}
-
 #if HAS_SMOOTH
 #define MESH_PARAMETERS                                                   \
     __global const float *vertices, __global const float *vertex_normals, \
@@ -63,8 +58,7 @@ static void write_surface(__global Surface* surface, Ray ray, uint triangle, flo
     if (dot(smooth, smooth) > 0.0f)
         normal = normalize(dot(smooth, geometric) < 0.0f ? -smooth : smooth);
 #endif
-    const float extent =
-        max(max(largest_coordinate(v0), largest_coordinate(v1)), largest_coordinate(v2));
+    const float extent = max(max(largest_part(v0), largest_part(v1)), largest_part(v2));
     surface->position = (float4)(v0 + (v1 - v0) * weights.x + (v2 - v0) * weights.y, distance);
     surface->normal = (float4)(normal, 0.0f);
     surface->geometric = (float4)(geometric, OFFSET_SCALE * extent);
@@ -104,7 +98,7 @@ KERNEL void gbuffer_trace_packets(Tiles tiles, Camera camera, uint jitter, uint 
     for (uint lane = 0u; lane < 16u; ++lane) {
         if (!item_in_image(tiles, first + lane)) continue;
         const Ray ray = {packet.origin, direction_of(&packet, lane), INFINITY};
-        write_surface(surfaces + first + lane, ray, ((const uint*)&triangles)[lane],
+        write_surface(surfaces + first + lane, ray, (uint)INT_LANE(triangles, lane),
                       LANE(packet.end, lane), MESH_ARGUMENTS);
     }
 }

@@ -57,14 +57,16 @@ std::size_t RaySet::ray_count() const {
 
 RaySet primary_rays(const Camera& camera, const Tiles& tiles) {
     RaySet set{"primary", false, true, {}};
-    set.packets.resize(item_count(tiles) / 16);
+    // Rays of an orthographic camera share no origin: each has its own packet.
+    const std::size_t lanes = camera.forward.w == 0 ? 16 : 1;
+    set.packets.resize(item_count(tiles) / lanes);
     for (std::size_t item = 0; item < item_count(tiles); ++item) {
         const glm::uvec2 pixel = item_pixel(tiles, item);
         const reference::Ray ray =
             reference::primary_ray(camera, tiles, glm::dvec2(pixel) + glm::dvec2(0.5));
-        RayPacket& packet = set.packets[item / 16];
+        RayPacket& packet = set.packets[item / lanes];
         packet.origin = ray.origin;
-        put(packet, item % 16,
+        put(packet, item % lanes,
             {packet.origin, ray.direction, std::numeric_limits<float>::infinity()});
     }
     return set;

@@ -28,13 +28,18 @@ constexpr unsigned builds = 3;
 // The dragon's room, with the mesh if one is given.
 LoadedScene load_room(const BenchArguments& arguments) {
     SceneArguments scene = arguments.scene;
-    const std::filesystem::path path =
-        std::filesystem::temp_directory_path() / fmt::format("manylight-bench-{}.glb", getpid());
-    make_builtin("dragon", {.lights = 0, .mesh = arguments.mesh}).write(path.string());
-    scene.file = path.string();
-    scene.camera = arguments.view;
+    struct TemporaryFile {
+        std::filesystem::path path = std::filesystem::temp_directory_path() /
+                                     fmt::format("manylight-bench-{}.glb", getpid());
+        ~TemporaryFile() {
+            std::error_code ignored;
+            std::filesystem::remove(path, ignored);
+        }
+    } const file;
+    make_builtin("dragon", {.lights = 0, .mesh = arguments.mesh}).write(file.path.string());
+    scene.file = file.path.string();
+    scene.camera = arguments.view.empty() ? "far" : arguments.view;
     LoadedScene loaded = load(scene);
-    std::filesystem::remove(path);
     loaded.scene.file = arguments.mesh.empty() ? "dragon" : "dragon with " + arguments.mesh;
     return loaded;
 }
@@ -93,17 +98,23 @@ void add_ratios(const RaySetResult& set, const TracingResult& used, json& ratios
                         {"best", best.name}};
 }
 
+WideBvh build(const LoadedScene& loaded, const BenchArguments& arguments, const Device& device) {
+    const unsigned lanes = lanes_for(device.info());
+    return build_wide_bvh(loaded.scene, arguments.bvh_width ? arguments.bvh_width : lanes,
+                          arguments.bvh_block ? arguments.bvh_block : lanes,
+                          reach_of(loaded.scene, loaded.camera));
+}
+
 // Builds both BVHs in turn; the last ones are kept.
-WideBvh measure_builds(const LoadedScene& loaded, const BenchArguments& arguments, unsigned lanes,
-                       unsigned threads, std::optional<EmbreeScene>& embree, json& out) {
+WideBvh measure_builds(const LoadedScene& loaded, const BenchArguments& arguments,
+                       const Device& device, unsigned threads, std::optional<EmbreeScene>& embree,
+                       json& out) {
     WideBvh bvh;
     std::vector<double> ours;
     std::vector<double> theirs;
     for (unsigned i = 0; i < builds; ++i) {
         const auto start = Clock::now();
-        bvh = build_wide_bvh(loaded.scene, arguments.bvh_width ? arguments.bvh_width : lanes,
-                             arguments.bvh_block ? arguments.bvh_block : lanes,
-                             reach_of(loaded.scene, loaded.camera));
+        bvh = build(loaded, arguments, device);
         ours.push_back(seconds_since(start));
         if (!EmbreeScene::available()) continue;
         embree.emplace(loaded.scene, threads);
@@ -132,8 +143,7 @@ void bench_traversal(const LoadedScene& loaded, Device& device, const BenchArgum
     const unsigned threads =
         arguments.scene.threads ? arguments.scene.threads : std::thread::hardware_concurrency();
     std::optional<EmbreeScene> embree;
-    const WideBvh bvh =
-        measure_builds(loaded, arguments, lanes_for(device.info()), threads, embree, out);
+    const WideBvh bvh = measure_builds(loaded, arguments, device, threads, embree, out);
     const DeviceScene scene = upload_scene(device, loaded.scene, bvh, loaded.camera);
     const Tiles tiles = all_tiles(loaded.width, loaded.height, 32);
     Surface missed{};
@@ -157,7 +167,8 @@ void bench_traversal(const LoadedScene& loaded, Device& device, const BenchArgum
             return measure(set, tracer, reach, kernels.tracings(set.any_hit), theirs,
                            arguments.rounds, [&] { progress.set(++done / steps); });
         }();
-        const TracingResult& used = result.kernels[scene.packets ? 0 : 1];
+        const TracingResult& used =
+            result.kernels[(set.any_hit ? scene.packets : scene.primary_packets) ? 0 : 1];
         json& rays = out["rays"][set.name];
         rays["count"] = result.rays;
         for (const auto* list : {&result.kernels, &result.embree})
@@ -187,9 +198,7 @@ void bench_stages(const LoadedScene& loaded, const Device& device, const BenchAr
     options.spp = 1;
     options.width = loaded.width;
     options.height = loaded.height;
-    const unsigned lanes = lanes_for(device.info());
-    const WideBvh bvh =
-        build_wide_bvh(loaded.scene, lanes, lanes, reach_of(loaded.scene, loaded.camera));
+    const WideBvh bvh = build(loaded, arguments, device);
     std::map<std::string, std::vector<double>> seconds;
     std::vector<double> totals;
     std::size_t shadow_rays = 0;
@@ -219,8 +228,9 @@ void bench_stages(const LoadedScene& loaded, const Device& device, const BenchAr
         fmt::print("  {:<18}{:9.4f} s {:6.1f} %\n", stage, median, 100 * median / total);
         out["stages"][stage] = {{"seconds", median}, {"share", median / total}};
     }
+    if (shadow_rays == 0) return;
     const double shadow_rate =
-        static_cast<double>(shadow_rays) / quartiles(seconds["shadows"]).median / 1e6;
+        static_cast<double>(shadow_rays) / quartiles(seconds.at("shadows")).median / 1e6;
     fmt::print("  {:<18}{:9.4f} s\n  shadow rays: {}, {:.2f} Mrays/s\n", "all", total, shadow_rays,
                shadow_rate);
     out["stages"]["shadow_mrays_per_s"] = shadow_rate;
@@ -231,14 +241,25 @@ void bench_stages(const LoadedScene& loaded, const Device& device, const BenchAr
 int run_bench(const BenchArguments& arguments) {
     const bool traversal = arguments.what == "traversal";
     const bool stages = arguments.what == "stages";
-    if (!traversal && !stages && !arguments.mesh.empty())
-        throw InputError(
-            "--mesh {}: goes with 'bench traversal' or 'bench stages', not with a file",
-            arguments.mesh);
-    if (!arguments.json.empty()) check_output("--json", arguments.json);
+    const bool file = !traversal && !stages;
+    for (const auto& [option, value] :
+         {std::pair{"--mesh", &arguments.mesh}, std::pair{"--view", &arguments.view}})
+        if (file && !value->empty())
+            throw InputError(
+                "{} {}: goes with 'bench traversal' or 'bench stages', not with a file", option,
+                *value);
+    if (!file && !arguments.scene.camera.empty())
+        throw InputError("--camera {}: goes with a file; the dragon's room has --view",
+                         arguments.scene.camera);
+    if (!arguments.json.empty()) {
+        check_output("--json", arguments.json);
+        for (const std::string& input : {arguments.what, arguments.mesh})
+            if (same_file(arguments.json, input))
+                throw InputError("--json {}: is the scene itself", arguments.json);
+    }
     BenchArguments with_file = arguments;
     with_file.scene.file = arguments.what;
-    const LoadedScene loaded = traversal || stages ? load_room(arguments) : load(with_file.scene);
+    const LoadedScene loaded = file ? load(with_file.scene) : load_room(arguments);
     if (loaded.scene.lights.empty())
         throw InputError("{}: has no lights: there are no shadow rays to measure",
                          loaded.scene.file);

@@ -49,7 +49,7 @@ struct BenchArguments {
     std::string what;  // traversal, stages, or a scene file for both
     SceneArguments scene;
     std::string mesh;
-    std::string view = "far";  // far or close
+    std::string view;  // far (the default) or close
     std::string sampler = "contribution-defensive";
     uint light_samples = 16;
     std::string json;  // file

@@ -207,9 +207,8 @@ void add_bench(CLI::App& app, std::function<int()>& run) {
         ->required();
     command->add_option("--mesh", arguments->mesh,
                         "traversal, stages: glTF file whose mesh stands in the dragon's room");
-    command->add_option("--view", arguments->view, "traversal, stages: far or close")
-        ->check(CLI::IsMember({"far", "close"}))
-        ->capture_default_str();
+    command->add_option("--view", arguments->view, "traversal, stages: far (the default) or close")
+        ->check(CLI::IsMember({"far", "close"}));
     command->add_option("--json", arguments->json, "file for all figures");
     command->add_option("--rounds", arguments->rounds, "rounds in which all take turns")
         ->check(whole(1, 1000))
@@ -220,7 +219,7 @@ void add_bench(CLI::App& app, std::function<int()>& run) {
         ->capture_default_str();
     for (const auto& [name, value] : {std::pair{"--bvh-width", &arguments->bvh_width},
                                       std::pair{"--bvh-block", &arguments->bvh_block}})
-        command->add_option(name, *value, "traversal: 4, 8 or 16 (default: as suits the device)")
+        command->add_option(name, *value, "4, 8 or 16 (default: as suits the device)")
             ->check(CLI::IsMember({4, 8, 16}));
     add_view(*command, arguments->scene);
     command->footer(

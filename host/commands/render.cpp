@@ -42,17 +42,12 @@ void check_files(const RenderArguments& arguments, const std::vector<std::string
         if (option == "--cluster-map") endings = {".png"};
         check_output(option, path, endings);
     }
-    const auto same = [](const std::string& a, const std::string& b) {
-        std::error_code error;
-        return fs::weakly_canonical(fs::absolute(a), error) ==
-               fs::weakly_canonical(fs::absolute(b), error);
-    };
     for (std::size_t i = 0; i < files.size(); ++i) {
         const auto& [option, path] = files[i];
-        if (same(path, arguments.scene.file))
+        if (same_file(path, arguments.scene.file))
             throw InputError("{} {}: is the scene itself", option, path);
         for (std::size_t j = 0; j < i; ++j)
-            if (same(path, files[j].second))
+            if (same_file(path, files[j].second))
                 throw InputError("{} {}: is written by {} too", option, path, files[j].first);
     }
 }

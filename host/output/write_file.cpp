@@ -47,6 +47,15 @@ void check_output(const std::string& option, const std::string& path,
         throw InputError("{} {}: is not a regular file", option, path);
 }
 
+bool same_file(const std::string& a, const std::string& b) {
+    namespace fs = std::filesystem;
+    std::error_code error;
+    const auto canonical = [&](const std::string& path) {
+        return fs::weakly_canonical(fs::absolute(path, error), error);
+    };
+    return !a.empty() && !b.empty() && canonical(a) == canonical(b);
+}
+
 void write_file(const std::string& path, std::span<const std::byte> bytes) {
     std::error_code error;
     const fs::path target =

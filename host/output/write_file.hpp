@@ -13,6 +13,9 @@ namespace manylight {
 void check_output(const std::string& option, const std::string& path,
                   std::span<const std::string> endings = {});
 
+/// Whether two paths lead to one file, there or not.
+[[nodiscard]] bool same_file(const std::string& a, const std::string& b);
+
 /// Writes a whole file: to a name of its own beside the target, flushed to the disk, then renamed,
 /// so that an older file stays whole until the new one is. A symbolic link keeps leading to it.
 /// Throws RuntimeError, and leaves nothing behind, where that fails.

@@ -156,8 +156,8 @@ typedef struct BlockHits {
     int_k hit;
 } BlockHits;
 
-// One ray against all triangles.
-static BlockHits hit_block(const PreparedBlock* b, float3 direction, float end) {
+// One ray against all triangles; `size` is the largest part of its direction.
+static BlockHits hit_block(const PreparedBlock* b, float3 direction, float size, float end) {
     const float_k x = direction.x, y = direction.y, z = direction.z;
     const float_k n = fma(x, b->n[0], fma(y, b->n[1], z * b->n[2]));
     const float_k q = fma(x, b->q[0], fma(y, b->q[1], z * b->q[2]));
@@ -168,7 +168,6 @@ static BlockHits hit_block(const PreparedBlock* b, float3 direction, float end) 
     BlockHits hits;
     hits.n = fabs(n);
     hits.t = as_float_k(as_int_k(b->t) ^ sign);
-    const float size = max(max(fabs(direction.x), fabs(direction.y)), fabs(direction.z));
     const float_k s = fma(x, b->s[0], fma(y, b->s[1], z * b->s[2]));
     const float_k w = as_float_k(as_int_k(s) ^ sign);
     const float_k inside =
@@ -178,9 +177,12 @@ static BlockHits hit_block(const PreparedBlock* b, float3 direction, float end) 
     return hits;
 }
 
+static float largest_part(float3 v) { return max(max(fabs(v.x), fabs(v.y)), fabs(v.z)); }
+
 // Whether anything is hit within the segment.
 static bool occluded(BVH_PARAMETERS, Ray ray) {
     const Prepared prepared = prepare_ray(ray);
+    const float size = largest_part(ray.direction);
     int stack[BVH_STACK];
     int top = 0;
     stack[top++] = 0;
@@ -189,7 +191,7 @@ static bool occluded(BVH_PARAMETERS, Ray ray) {
         if (entry < 0) {
             const PreparedBlock block =
                 prepare_block(bvh_blocks + (~entry >> 4) * BLOCK_ROWS, ray.origin);
-            if (lanes_k(hit_block(&block, ray.direction, ray.end).hit)) return true;
+            if (lanes_k(hit_block(&block, ray.direction, size, ray.end).hit)) return true;
             continue;
         }
         __global const float_w* node = bvh_nodes + entry * 7;
@@ -205,6 +207,7 @@ static bool occluded(BVH_PARAMETERS, Ray ray) {
 // The hit with the smallest t.
 static Hit closest_hit(BVH_PARAMETERS, Ray ray) {
     const Prepared prepared = prepare_ray(ray);
+    const float size = largest_part(ray.direction);
     Hit hit = {~0u, ray.end};
     int stack[BVH_STACK];
     float distance[BVH_STACK];
@@ -217,7 +220,7 @@ static Hit closest_hit(BVH_PARAMETERS, Ray ray) {
         if (entry < 0) {
             __global const float_k* block = bvh_blocks + (~entry >> 4) * BLOCK_ROWS;
             const PreparedBlock ready = prepare_block(block, ray.origin);
-            const BlockHits hits = hit_block(&ready, ray.direction, ray.end);
+            const BlockHits hits = hit_block(&ready, ray.direction, size, ray.end);
             const uint found = lanes_k(hits.hit);
             if (!found) continue;
             __global const uint* triangles = (__global const uint*)(block + 9);

@@ -12,18 +12,18 @@
 
 #define LANE(vector, lane) (((const float*)&(vector))[lane])
 #define SET_LANE(vector, lane, value) ((float*)&(vector))[lane] = (value)
+#define INT_LANE(vector, lane) (((int*)&(vector))[lane])
 
 // Segments origin + t direction, 0 < t < end; a lane whose end is not positive holds no ray.
 typedef struct Packet {
     float3 origin;
-    float16 x, y, z;     // directions
-    float16 ix, iy, iz;  // their inverses
-    float16 size;        // largest part of the directions
+    float16 x, y, z;                 // directions
+    float16 size;                    // their largest parts
+    float16 ix, iy, iz, bx, by, bz;  // slabs: planes at q are crossed at q * i + b
+    int16 near_x, near_y, near_z;    // as in Prepared
     float16 end;
-    // Bounds of the inverses over all rays, and of where rays end, for tests of all at once; on an
-    // axis along which directions differ in sign, nothing is bounded and the mask is 0.
-    float3 lowest, highest;
-    float furthest;
+    float3 lowest, highest;  // bounds of the inverses (ix, iy, iz) over all rays
+    float furthest;          // the last end
 } Packet;
 
 static float16 safe_inverse_16(float16 d) {
@@ -39,11 +39,6 @@ static float lowest_of(float16 v) {
 
 static float highest_of(float16 v) { return -lowest_of(-v); }
 
-static void bound_axis(float16 inverse, int16 none, float* lowest, float* highest) {
-    *lowest = lowest_of(select(inverse, (float16)(INFINITY), none));
-    *highest = highest_of(select(inverse, (float16)(-INFINITY), none));
-}
-
 static Packet make_packet(float3 origin, float16 x, float16 y, float16 z, float16 end) {
     Packet p;
     p.origin = origin;
@@ -54,18 +49,19 @@ static Packet make_packet(float3 origin, float16 x, float16 y, float16 z, float1
     p.ix = safe_inverse_16(x);
     p.iy = safe_inverse_16(y);
     p.iz = safe_inverse_16(z);
+    p.bx = -origin.x * p.ix;
+    p.by = -origin.y * p.iy;
+    p.bz = -origin.z * p.iz;
+    p.near_x = select((int16)(0), (int16)(3), p.ix < 0.0f);
+    p.near_y = select((int16)(1), (int16)(4), p.iy < 0.0f);
+    p.near_z = select((int16)(2), (int16)(5), p.iz < 0.0f);
     p.size = max(max(fabs(x), fabs(y)), fabs(z));
     const int16 none = !(end > 0.0f);
-    float low, high;
-    bound_axis(p.ix, none, &low, &high);
-    p.lowest.x = low;
-    p.highest.x = high;
-    bound_axis(p.iy, none, &low, &high);
-    p.lowest.y = low;
-    p.highest.y = high;
-    bound_axis(p.iz, none, &low, &high);
-    p.lowest.z = low;
-    p.highest.z = high;
+    const float16 far = (float16)(INFINITY);
+    p.lowest = (float3)(lowest_of(select(p.ix, far, none)), lowest_of(select(p.iy, far, none)),
+                        lowest_of(select(p.iz, far, none)));
+    p.highest = (float3)(highest_of(select(p.ix, -far, none)), highest_of(select(p.iy, -far, none)),
+                         highest_of(select(p.iz, -far, none)));
     p.furthest = highest_of(end);
     return p;
 }
@@ -75,11 +71,17 @@ static float3 direction_of(const Packet* p, uint lane) {
 }
 
 static Prepared prepared_of(const Packet* p, uint lane) {
-    return prepare(p->origin, (float3)(LANE(p->ix, lane), LANE(p->iy, lane), LANE(p->iz, lane)));
+    Prepared r;
+    r.inverse = (float3)(LANE(p->ix, lane), LANE(p->iy, lane), LANE(p->iz, lane));
+    r.bias = (float3)(LANE(p->bx, lane), LANE(p->by, lane), LANE(p->bz, lane));
+    r.near_x = INT_LANE(p->near_x, lane);
+    r.near_y = INT_LANE(p->near_y, lane);
+    r.near_z = INT_LANE(p->near_z, lane);
+    return r;
 }
 
 // Where any ray may enter and leave the slabs of an axis, given bounds of the inverses: planes are
-// relative to the origin.
+// relative to the origin. Nothing can be said where directions differ in sign.
 static void bound_slabs(float_w lower, float_w upper, float low, float high, float_w* entry,
                         float_w* leave) {
     if (low > 0.0f) {  // all rays go up: they enter at `lower`
@@ -101,49 +103,73 @@ static uint may_enter_children(__global const float_w* node, const Packet* p, fl
                 &leave);
     bound_slabs(node[2] - p->origin.z, node[5] - p->origin.z, p->lowest.z, p->highest.z, entry,
                 &leave);
-    return lanes_w(*entry <= leave);
+    return lanes_w((*entry <= leave) & (node[0] <= node[3]));  // which empty lanes are not
 }
 
 // The rays that enter one child.
 static uint enter_child(__global const float* lane, const Packet* p) {
-    const float16 x0 = (lane[0] - p->origin.x) * p->ix;
-    const float16 x1 = (lane[3 * BVH_WIDTH] - p->origin.x) * p->ix;
-    const float16 y0 = (lane[BVH_WIDTH] - p->origin.y) * p->iy;
-    const float16 y1 = (lane[4 * BVH_WIDTH] - p->origin.y) * p->iy;
-    const float16 z0 = (lane[2 * BVH_WIDTH] - p->origin.z) * p->iz;
-    const float16 z1 = (lane[5 * BVH_WIDTH] - p->origin.z) * p->iz;
+    const float16 lx = (float16)(lane[0]), hx = (float16)(lane[3 * BVH_WIDTH]);
+    const float16 ly = (float16)(lane[BVH_WIDTH]), hy = (float16)(lane[4 * BVH_WIDTH]);
+    const float16 lz = (float16)(lane[2 * BVH_WIDTH]), hz = (float16)(lane[5 * BVH_WIDTH]);
+    const float16 x0 = fma(lx, p->ix, p->bx), x1 = fma(hx, p->ix, p->bx);
+    const float16 y0 = fma(ly, p->iy, p->by), y1 = fma(hy, p->iy, p->by);
+    const float16 z0 = fma(lz, p->iz, p->bz), z1 = fma(hz, p->iz, p->bz);
     const float16 entry = max(max(min(x0, x1), min(y0, y1)), max(min(z0, z1), (float16)(0.0f)));
     const float16 leave = min(min(max(x0, x1), max(y0, y1)), min(max(z0, z1), p->end));
     return lanes_16(entry <= leave);
 }
 
-// The rays that hit triangle `lane` of a block.
-static int16 hit_triangle(const PreparedBlock* b, uint lane, const Packet* p) {
-    const float* values = (const float*)b;
-#define ROW(i) values[(i)*BVH_BLOCK + lane]
-    const float16 n = fma(p->x, ROW(0), fma(p->y, ROW(1), p->z * ROW(2)));
-    const float16 q = fma(p->x, ROW(3), fma(p->y, ROW(4), p->z * ROW(5)));
-    const float16 r = fma(p->x, ROW(6), fma(p->y, ROW(7), p->z * ROW(8)));
+// A triangle of a block as all rays meet it.
+typedef struct TriangleHits {
+    float16 t, n;  // t and what it is to be divided by
+    int16 hit;
+} TriangleHits;
+
+// hit_block() the other way round: all rays against triangle `lane` of a block.
+static TriangleHits hit_triangle(const PreparedBlock* b, uint lane, const Packet* p) {
+#define DOT(v) \
+    fma(p->x, LANE((v)[0], lane), fma(p->y, LANE((v)[1], lane), p->z* LANE((v)[2], lane)))
+#define WITH_MARGIN(margin, v) fma(p->size, LANE(margin, lane), as_float16(as_int16(DOT(v)) ^ sign))
+    TriangleHits hits;
+    const float16 n = DOT(b->n);
     const int16 sign = as_int16(n) & (int)0x80000000;
-    const float16 determinant = fabs(n);
-    const float16 u = as_float16(as_int16(q) ^ sign);
-    const float16 v = as_float16(as_int16(r) ^ sign);
-    const float16 t = as_float16(as_int(ROW(12)) ^ sign);
-    const float16 s = fma(p->x, ROW(9), fma(p->y, ROW(10), p->z * ROW(11)));
-    const float16 w = as_float16(as_int16(s) ^ sign);
-    const float16 inside =
-        min(min(fma(p->size, ROW(13), u), fma(p->size, ROW(14), v)), fma(p->size, ROW(15), w));
-    return (inside >= 0.0f) & (determinant > ROW(16) * p->size) & (t > 0.0f) &
-           (t < p->end * determinant);
-#undef ROW
+    const float16 inside = min(min(WITH_MARGIN(b->margin_u, b->q), WITH_MARGIN(b->margin_v, b->r)),
+                               WITH_MARGIN(b->margin_w, b->s));
+    hits.n = fabs(n);
+    hits.t = as_float16(as_int(LANE(b->t, lane)) ^ sign);
+    hits.hit = (inside >= 0.0f) & (hits.n > LANE(b->least_n, lane) * p->size) & (hits.t > 0.0f) &
+               (hits.t < p->end * hits.n);
+    return hits;
+#undef WITH_MARGIN
+#undef DOT
 }
 
-// t at which the rays meet the plane of triangle `lane`.
-static float16 distance_to(const PreparedBlock* b, uint lane, const Packet* p) {
-    const float* values = (const float*)b;
-    const float16 n = fma(p->x, values[lane],
-                          fma(p->y, values[BVH_BLOCK + lane], p->z * values[2 * BVH_BLOCK + lane]));
-    return values[12 * BVH_BLOCK + lane] / n;
+// The children that rays of a set enter: `sets` gets which rays, `entry` where the first does, at
+// the earliest.
+static uint enter_children_16(__global const float_w* node, const Packet* p, uint rays, int_w* sets,
+                              float_w* entry) {
+    uint entered = 0u;
+    if (popcount(rays) <= PACKET_FEW) {
+        *entry = (float_w)(INFINITY);
+        *sets = (int_w)(0);
+        for (; rays; rays &= rays - 1u) {
+            const uint lane = lowest(rays);
+            const Prepared ray = prepared_of(p, lane);
+            float_w near;
+            const int_w hit = enter_children(node, &ray, LANE(p->end, lane), &near);
+            *sets |= hit & (int)(1u << lane);
+            *entry = select(*entry, min(*entry, near), hit);
+        }
+        entered = lanes_w(*sets != 0);
+    } else {
+        for (uint lanes = may_enter_children(node, p, entry); lanes; lanes &= lanes - 1u) {
+            const uint lane = lowest(lanes);
+            const uint hit = enter_child((__global const float*)node + lane, p) & rays;
+            INT_LANE(*sets, lane) = (int)hit;
+            entered |= (uint)(hit != 0u) << lane;
+        }
+    }
+    return entered;
 }
 
 // Ends the rays that hit something, at -1; returns whether any did.
@@ -159,22 +185,23 @@ static bool occlude_packet(BVH_PARAMETERS, Packet* p) {
         const int entry = stack[--top];
         const uint mask = masks[top] & live;
         if (!mask) continue;
-        const uint count = popcount(mask);
         if (entry < 0) {
             const PreparedBlock block =
                 prepare_block(bvh_blocks + (~entry >> 4) * BLOCK_ROWS, p->origin);
             const uint triangles = (uint)(~entry & 15) + 1u;
-            if (count < triangles) {
+            if (popcount(mask) < triangles) {
                 for (uint rays = mask; rays; rays &= rays - 1u) {
                     const uint lane = lowest(rays);
-                    if (!lanes_k(hit_block(&block, direction_of(p, lane), LANE(p->end, lane)).hit))
+                    if (!lanes_k(hit_block(&block, direction_of(p, lane), LANE(p->size, lane),
+                                           LANE(p->end, lane))
+                                     .hit))
                         continue;
                     live &= ~(1u << lane);
                     SET_LANE(p->end, lane, -1.0f);
                 }
             } else {
                 for (uint triangle = 0u; triangle < triangles; ++triangle) {
-                    const int16 hit = hit_triangle(&block, triangle, p);
+                    const int16 hit = hit_triangle(&block, triangle, p).hit;
                     const uint rays = lanes_16(hit);
                     if (!rays) continue;
                     live &= ~rays;
@@ -187,27 +214,13 @@ static bool occlude_packet(BVH_PARAMETERS, Packet* p) {
         }
         __global const float_w* node = bvh_nodes + entry * 7;
         __global const int* children = (__global const int*)(node + 6);
+        int_w sets;
         float_w near;
-        if (count <= PACKET_FEW) {
-            int_w sets = (int_w)(0);
-            for (uint rays = mask; rays; rays &= rays - 1u) {
-                const uint lane = lowest(rays);
-                const Prepared ray = prepared_of(p, lane);
-                sets |= enter_children(node, &ray, LANE(p->end, lane), &near) & (int)(1u << lane);
-            }
-            for (uint lanes = lanes_w(sets != 0); lanes; lanes &= lanes - 1u) {
-                const uint lane = lowest(lanes);
-                stack[top] = children[lane];
-                masks[top++] = ((const uint*)&sets)[lane];
-            }
-        } else {
-            for (uint lanes = may_enter_children(node, p, &near); lanes; lanes &= lanes - 1u) {
-                const uint lane = lowest(lanes);
-                const uint entering = enter_child((__global const float*)node + lane, p) & mask;
-                stack[top] = children[lane];
-                masks[top] = entering;
-                top += entering != 0u;
-            }
+        for (uint lanes = enter_children_16(node, p, mask, &sets, &near); lanes;
+             lanes &= lanes - 1u) {
+            const uint lane = lowest(lanes);
+            stack[top] = children[lane];
+            masks[top++] = (uint)INT_LANE(sets, lane);
         }
     }
     return live != all;
@@ -227,18 +240,17 @@ static void closest_hits(BVH_PARAMETERS, Packet* p, int16* triangles) {
         const int entry = stack[--top];
         if (distance[top] > p->furthest) continue;
         const uint mask = masks[top];
-        const uint count = popcount(mask);
         if (entry < 0) {
             __global const float_k* rows = bvh_blocks + (~entry >> 4) * BLOCK_ROWS;
             __global const int* names = (__global const int*)(rows + 9);
             const PreparedBlock block = prepare_block(rows, p->origin);
             bool any_hit = false;
             const uint all = (uint)(~entry & 15) + 1u;
-            if (count < all) {
+            if (popcount(mask) < all) {
                 for (uint rays = mask; rays; rays &= rays - 1u) {
                     const uint lane = lowest(rays);
-                    const BlockHits hits =
-                        hit_block(&block, direction_of(p, lane), LANE(p->end, lane));
+                    const BlockHits hits = hit_block(&block, direction_of(p, lane),
+                                                     LANE(p->size, lane), LANE(p->end, lane));
                     const uint found = lanes_k(hits.hit);
                     if (!found) continue;
                     const float_k t = hits.t / hits.n;
@@ -246,16 +258,16 @@ static void closest_hits(BVH_PARAMETERS, Packet* p, int16* triangles) {
                         const uint triangle = lowest(lanes);
                         if (LANE(t, triangle) >= LANE(p->end, lane)) continue;
                         SET_LANE(p->end, lane, LANE(t, triangle));
-                        ((int*)triangles)[lane] = names[triangle];
+                        INT_LANE(*triangles, lane) = names[triangle];
                         any_hit = true;
                     }
                 }
             } else {
                 for (uint triangle = 0u; triangle < all; ++triangle) {
-                    const int16 hit = hit_triangle(&block, triangle, p);
-                    if (!lanes_16(hit)) continue;
-                    p->end = select(p->end, distance_to(&block, triangle, p), hit);
-                    *triangles = select(*triangles, (int16)(names[triangle]), hit);
+                    const TriangleHits hits = hit_triangle(&block, triangle, p);
+                    if (!lanes_16(hits.hit)) continue;
+                    p->end = select(p->end, hits.t / hits.n, hits.hit);
+                    *triangles = select(*triangles, (int16)(names[triangle]), hits.hit);
                     any_hit = true;
                 }
             }
@@ -264,30 +276,12 @@ static void closest_hits(BVH_PARAMETERS, Packet* p, int16* triangles) {
         }
         __global const float_w* node = bvh_nodes + entry * 7;
         __global const int* children = (__global const int*)(node + 6);
+        int_w sets;
         float_w enter;
-        int_w sets = (int_w)(0);
-        uint lanes;
-        if (count <= PACKET_FEW) {
-            float_w nearest_entry = (float_w)(INFINITY);
-            for (uint rays = mask; rays; rays &= rays - 1u) {
-                const uint lane = lowest(rays);
-                const Prepared ray = prepared_of(p, lane);
-                const int_w entered = enter_children(node, &ray, LANE(p->end, lane), &enter);
-                sets |= entered & (int)(1u << lane);
-                nearest_entry = select(nearest_entry, min(nearest_entry, enter), entered);
-            }
-            enter = nearest_entry;
-            lanes = lanes_w(sets != 0);
-        } else {
-            lanes = may_enter_children(node, p, &enter);
-        }
+        uint lanes = enter_children_16(node, p, mask, &sets, &enter);
         float nearest = INFINITY;
         for (; lanes; lanes &= lanes - 1u) {  // the nearest child ends on top of the stack
             const uint lane = lowest(lanes);
-            const uint entering = count <= PACKET_FEW
-                                      ? ((const uint*)&sets)[lane]
-                                      : enter_child((__global const float*)node + lane, p) & mask;
-            if (!entering) continue;
             int place = top++;
             if (LANE(enter, lane) >= nearest) {
                 stack[place] = stack[place - 1];
@@ -299,7 +293,7 @@ static void closest_hits(BVH_PARAMETERS, Packet* p, int16* triangles) {
             }
             stack[place] = children[lane];
             distance[place] = LANE(enter, lane);
-            masks[place] = entering;
+            masks[place] = (uint)INT_LANE(sets, lane);
         }
     }
 }
