@@ -36,7 +36,7 @@ TEST(pdf, agrees_with_the_reference) {
     FOR_EACH_DEVICE(device)
     for (const std::string& scene : test::scene_names())
         for (const Sampler& sampler : all_samplers()) {
-            if (sampler.table == Table::none) continue;
+            if (sampler.table != Table::power && sampler.table != Table::clusters) continue;
             SCOPED_TRACE(scene);
             test::expect_pass(test::verifier(scene, device).pdf(sampler));
         }

@@ -72,7 +72,7 @@ Drawn draw_often(Device device, const Sampler& sampler) {
             total = totals[rows[item]];
         }
         std::vector<double> p(lights, 1.0 / lights);
-        if (sampler.table != Table::none)
+        if (sampler.table == Table::power || sampler.table == Table::clusters)
             p = reference::probabilities(row, total, s.scene.lights, mixture);
         out.expected.insert(out.expected.end(), p.begin(), p.end());
     }
@@ -136,7 +136,8 @@ TEST(samples, agree_with_the_reference) {
 TEST(samples, frequencies_follow_the_pdf) {
     FOR_EACH_DEVICE(device)
     for (const Sampler& sampler : all_samplers()) {
-        if (sampler.all_lights) continue;
+        // Those whose probabilities the reference writes down; the others' are judged as estimates.
+        if (sampler.all_lights || sampler.table == Table::tree || sampler.name == "ris") continue;
         SCOPED_TRACE(std::string(sampler.name));
         const Drawn drawn = draw_often(device, sampler);
         const std::size_t lights = open_scene().scene.lights.size();

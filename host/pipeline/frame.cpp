@@ -72,8 +72,14 @@ void Frame::prepare() {
     const std::size_t pixels = std::size_t{options_.width} * options_.height;
     const std::size_t items = std::size_t{plan_.tiles_per_batch} * options_.clusters.tile_size *
                               options_.clusters.tile_size;
-    stages_ = std::make_shared<Stages>(device_, upload_scene(device_, scene_, bvh_, camera_),
-                                       sampler_, items);
+    const bool tree = sampler_.table == Table::tree;
+    if (tree) {
+        Stopwatch watch(result_.prepare_seconds, device_);
+        tree_ = build_light_tree(scene_.lights);
+    }
+    stages_ = std::make_shared<Stages>(
+        device_, upload_scene(device_, scene_, bvh_, camera_, tree ? &tree_ : nullptr), sampler_,
+        items);
     Stages& s = *stages_;
     s.surfaces = device_.allocate<Surface>(items);
     if (plan_.centres)

@@ -57,6 +57,7 @@ class Frame {
     RenderOptions options_;
     const Sampler& sampler_;
     Plan plan_;
+    LightTree tree_;  // where the sampler uses it
     uint light_samples_;
     std::size_t clusters_before_ = 0;  // the batch in work
     std::shared_ptr<Stages> stages_;

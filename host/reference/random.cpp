@@ -43,6 +43,12 @@ std::array<uint, 4> random_bits(uint pixel, uint pixel_sample, uint dimension, u
     return v;
 }
 
+uint step_bits(uint bits, uint i) {
+    const uint state = (bits + i * 0x9e3779b9u) * 747796405u + 2891336453u;
+    const uint word = ((state >> ((state >> 28) + 4)) ^ state) * 277803737u;
+    return (word >> 22) ^ word;
+}
+
 double unit_fraction(uint bits) { return (bits >> 8) / 16777216.0; }
 
 glm::dvec2 pixel_position(uint pixel, uint pixel_sample, uint seed) {

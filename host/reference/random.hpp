@@ -13,6 +13,9 @@ namespace manylight::reference {
 [[nodiscard]] std::array<uint, 4> random_bits(uint pixel, uint pixel_sample, uint dimension,
                                               uint seed);
 
+/// 32 bits for step i of what starts with 32 random bits: pcg_hash of the same paper.
+[[nodiscard]] uint step_bits(uint bits, uint i);
+
 /// In [0, 1): the top 24 bits as a fraction.
 [[nodiscard]] double unit_fraction(uint bits);
 

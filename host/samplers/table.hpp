@@ -14,6 +14,7 @@ namespace manylight {
 enum class Table {
     none,
     power,     // one CDF by the lights' power, for the whole image
+    tree,      // the light trees
     clusters,  // a CDF per cluster of pixels, from the contribution matrix
 };
 

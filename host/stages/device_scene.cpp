@@ -28,7 +28,7 @@ unsigned lanes_for(const DeviceInfo& device) {
 }
 
 DeviceScene upload_scene(Device& device, const Scene& scene, const WideBvh& bvh,
-                         const Camera& camera) {
+                         const Camera& camera, const LightTree* tree) {
     const Features features = find_features(scene);
     DeviceScene out;
     out.light_count = static_cast<uint>(scene.lights.size());
@@ -41,10 +41,14 @@ DeviceScene upload_scene(Device& device, const Scene& scene, const WideBvh& bvh,
         .set("indices", device.upload(scene.indices))
         .set("triangle_materials", device.upload(scene.triangle_materials))
         .set("materials", device.upload(scene.materials))
-        .set("lights", device.upload(scene.lights))
+        .set("lights", device.upload(tree ? tree->lights : scene.lights))
         .set("light_count", out.light_count);
     if (features.smooth)
         out.arguments.set("vertex_normals", device.upload(flat(scene.vertex_normals)));
+    if (tree)
+        out.arguments.set("nodes", device.upload(tree->nodes))
+            .set("root_count", static_cast<uint>(tree->roots.size()))
+            .set("second_root", tree->roots.size() > 1 ? tree->roots[1] : 0);
     out.traversal = {{"BVH_WIDTH", static_cast<int>(bvh.width)},
                      {"BVH_BLOCK", static_cast<int>(bvh.block)},
                      {"BVH_STACK", static_cast<int>(bvh.stack)}};

@@ -3,6 +3,7 @@
 
 #include "bvh/wide.hpp"
 #include "device/device.hpp"
+#include "light_tree/light_tree.hpp"
 #include "scene/scene.hpp"
 
 namespace manylight {
@@ -22,8 +23,9 @@ struct DeviceScene {
 /// Lanes of a BVH node and of a triangle block that suit a device.
 [[nodiscard]] unsigned lanes_for(const DeviceInfo& device);
 
-/// Uploads a scene whose lights are complete (add_emitters).
+/// Uploads a scene whose lights are complete (add_emitters): in the order of `tree`, and with its
+/// nodes (nodes, root_count, second_root), if there is one.
 [[nodiscard]] DeviceScene upload_scene(Device& device, const Scene& scene, const WideBvh& bvh,
-                                       const Camera& camera);
+                                       const Camera& camera, const LightTree* tree = nullptr);
 
 }  // namespace manylight

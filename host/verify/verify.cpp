@@ -49,6 +49,8 @@ Verifier::Verifier(Device device, const Scene& scene, const Camera& camera,
       reach_(reach_of(scene, camera)),
       bvh_(build_wide_bvh(scene, lanes_for(device.info()), lanes_for(device.info()), reach_)),
       device_scene_(upload_scene(device_, scene, bvh_, camera)),
+      tree_(build_light_tree(scene.lights)),
+      tree_scene_(upload_scene(device_, scene, bvh_, camera, &tree_)),
       tracer_(scene),
       surfaces_(device_.allocate<Surface>(item_count(tiles_))),
       clustering_(device_, device_scene_, options.clusters, tiles_.count) {
@@ -67,7 +69,8 @@ std::vector<Check> Verifier::all() {
                                  gbuffer(true),   clusters(),   representatives(),
                                  contributions(), refinement(), accumulate()};
     for (const Sampler& sampler : all_samplers()) {
-        if (sampler.table != Table::none) checks.push_back(pdf(sampler));
+        if (sampler.table == Table::power || sampler.table == Table::clusters)
+            checks.push_back(pdf(sampler));
         checks.push_back(samples(sampler));
     }
     return checks;

@@ -72,6 +72,8 @@ class Verifier {
     float reach_;
     WideBvh bvh_;
     DeviceScene device_scene_;
+    LightTree tree_;
+    DeviceScene tree_scene_;  // with the lights in the tree's order
     reference::Tracer tracer_;
     Buffer<Surface> surfaces_;    // at the pixels' centres
     std::vector<Surface> found_;  // the same, on the host

@@ -21,6 +21,13 @@ static uint4 random_bits(uint pixel, uint pixel_sample, uint dimension, uint see
     return v;
 }
 
+// 32 bits for step i of what starts with 32 random bits: pcg_hash of the same paper.
+static uint step_bits(uint bits, uint i) {
+    const uint state = (bits + i * 0x9e3779b9u) * 747796405u + 2891336453u;
+    const uint word = ((state >> ((state >> 28) + 4u)) ^ state) * 277803737u;
+    return (word >> 22) ^ word;
+}
+
 // The dimension that seeds the position of a pixel's samples; light samples use their own index.
 #define RANDOM_PIXEL_POSITION 0xffffffffu
 

@@ -31,26 +31,26 @@ KERNEL void samples_draw(Tiles tiles, Camera camera, __global const Surface* sur
         for (uint sample = first_sample; sample < end_sample; ++sample) {
             const uint4 bits =
                 random_bits(pixel.y * tiles.width + pixel.x, pixel_sample, sample, seed);
-            const Choice choice =
-                choose_light(item, sample, sample_count, bits.x, light_count SAMPLER_ARGUMENTS);
+            const Draw draw = {item, sample, sample_count, bits, light_count};
+            const Choice choice = choose_light(&receiver, lights, draw SAMPLER_ARGUMENTS);
             if (choice.weight == 0.0f) continue;
             if (choice.light == last && is_single_point(lights + choice.light)) {
                 if (!lit) continue;
-                value_lanes[lane - 1u] += last_value.x;
-                value_lanes[lane + 15u] += last_value.y;
-                value_lanes[lane + 31u] += last_value.z;
+                value_lanes[lane - 1u] += last_value.x * choice.weight;
+                value_lanes[lane + 15u] += last_value.y * choice.weight;
+                value_lanes[lane + 31u] += last_value.z * choice.weight;
                 continue;
             }
             const float2 u = (float2)(unit_float(bits.y), unit_float(bits.z));
             Ray shadow;
-            last_value = unshadowed(&receiver, lights + choice.light, u, &shadow) * choice.weight;
+            last_value = unshadowed(&receiver, lights + choice.light, u, &shadow);
             last = choice.light;
             lit = any(last_value != 0.0f);
             if (!lit) continue;
             put_ray(rays, item, lane, shadow);
-            value_lanes[lane] = last_value.x;
-            value_lanes[lane + 16u] = last_value.y;
-            value_lanes[lane + 32u] = last_value.z;
+            value_lanes[lane] = last_value.x * choice.weight;
+            value_lanes[lane + 16u] = last_value.y * choice.weight;
+            value_lanes[lane + 32u] = last_value.z * choice.weight;
             if (lane == 0u) origins[item] = (float4)(shadow.origin, 0.0f);
             ++lane;
         }

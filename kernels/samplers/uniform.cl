@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: MIT
 // Sampler uniform: every light has the same probability.
+#include "lib/direct.h"
 #include "lib/draw.h"
 
 #define SAMPLER_PARAMETERS
 #define SAMPLER_ARGUMENTS
 
-static Choice choose_light(uint item, uint sample, uint sample_count, uint random,
-                           uint light_count) {
-    Choice choice = {stratified_below(light_count, sample, sample_count, random),
-                     (float)light_count / (float)sample_count};
+static Choice choose_light(const Receiver* receiver, __global const Light* lights, Draw draw) {
+    Choice choice = {
+        stratified_below(draw.light_count, draw.sample, draw.sample_count, draw.bits.x),
+        (float)draw.light_count / (float)draw.sample_count};
     return choice;
 }
 

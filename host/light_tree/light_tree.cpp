@@ -1,0 +1,294 @@
+// SPDX-License-Identifier: MIT
+#include "light_tree/light_tree.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <future>
+#include <glm/gtc/constants.hpp>
+#include <thread>
+
+namespace manylight {
+namespace {
+
+constexpr int bin_count = 12;
+constexpr int deepest_split = 64;         // below, halves: bounds the depth whatever the input
+constexpr std::size_t task_size = 8'192;  // lights worth a thread of their own
+constexpr float pi = glm::pi<float>();
+
+// What the splits look at.
+struct Reference {
+    glm::vec3 position;
+    float power;
+    glm::vec3 axis;  // power times emission axis
+    std::uint32_t light;
+};
+
+bool has_area(const Light& light) {
+    return static_cast<LightKind>(light.position.w) == LIGHT_TRIANGLE;
+}
+
+bool has_axis(const Light& light) {
+    const auto kind = static_cast<LightKind>(light.position.w);
+    return kind == LIGHT_SPOT || kind == LIGHT_ORIENTED || (has_area(light) && light.axis.w == 0);
+}
+
+glm::vec3 area_normal(const Light& light) {
+    return glm::cross(glm::vec3(light.axis), glm::vec3(light.edge));
+}
+
+glm::vec3 axis_of(const Light& light) {
+    if (!has_axis(light)) return glm::vec3(0);
+    return has_area(light) ? glm::normalize(area_normal(light)) : glm::vec3(light.axis);
+}
+
+std::array<glm::vec3, 3> corners_of(const Light& light) {
+    const glm::vec3 p(light.position);
+    if (!has_area(light)) return {p, p, p};
+    return {p, p + glm::vec3(light.axis), p + glm::vec3(light.edge)};
+}
+
+// A node of one light.
+LightNode leaf_of(const Light& light, uint index) {
+    const auto kind = static_cast<LightKind>(light.position.w);
+    LightNode node{};
+    node.first = index;
+    node.count = 1;
+    node.infinite = kind == LIGHT_DIRECTIONAL ? 1 : 0;
+    Bounds bounds;
+    glm::vec3 centre(0);
+    glm::vec3 intensity(light.emission);
+    float mean_square = 0;
+    if (node.infinite) {
+        centre = -glm::vec3(light.axis);
+        bounds.add(centre);
+    } else {
+        const auto corners = corners_of(light);
+        for (const glm::vec3& corner : corners) {
+            bounds.add(corner);
+            centre += corner / 3.f;
+        }
+        if (has_area(light)) {
+            intensity *= glm::length(area_normal(light)) / 2;
+            const glm::vec3 e1(light.axis);
+            const glm::vec3 e2(light.edge);
+            mean_square = (glm::dot(e1, e1) + glm::dot(e2, e2) - glm::dot(e1, e2)) / 18;
+        }
+    }
+    float radius = 0;
+    if (has_area(light))
+        for (const glm::vec3& corner : corners_of(light))
+            radius = std::max(radius, glm::length(corner - centre));
+    const glm::vec3 axis = axis_of(light);
+    const bool two_sided = has_area(light) && light.axis.w != 0;
+    node.centre = float4(centre, mean_square);
+    node.axis = float4(axis, has_axis(light) ? 0 : two_sided ? 0.5f : 1);
+    node.intensity = float4(intensity, radius);
+    float emitting = -1;  // cosine of the largest angle off the axis
+    if (kind == LIGHT_SPOT) emitting = std::clamp(-light.edge.y / light.edge.x, 0.f, 1.f);
+    if (has_axis(light) && kind != LIGHT_SPOT) emitting = 0;
+    node.lower = float4(bounds.lower, has_axis(light) || node.infinite ? 1 : -1);
+    node.upper = float4(bounds.upper, emitting);
+    node.cone = float4(has_axis(light) ? axis : glm::vec3(0, 0, 1), light.emission.w);
+    return node;
+}
+
+// The cone that holds two cones, each an axis and the cosine of its half angle (pbrt-v4,
+// DirectionCone's Union).
+float4 join_cones(const float4& a, const float4& b) {
+    const float angle_a = std::acos(std::clamp(a.w, -1.f, 1.f));
+    const float angle_b = std::acos(std::clamp(b.w, -1.f, 1.f));
+    const glm::vec3 axis_a(a);
+    const glm::vec3 axis_b(b);
+    const float between = std::acos(std::clamp(glm::dot(axis_a, axis_b), -1.f, 1.f));
+    if (std::min(between + angle_b, pi) <= angle_a) return a;
+    if (std::min(between + angle_a, pi) <= angle_b) return b;
+    const float angle = (angle_a + between + angle_b) / 2;
+    const glm::vec3 turn = glm::cross(axis_a, axis_b);
+    if (angle >= pi || glm::dot(turn, turn) == 0) return {0, 0, 1, -1};
+    const float by = angle - angle_a;
+    const glm::vec3 side = glm::normalize(glm::cross(turn, axis_a));
+    const glm::vec3 axis = glm::normalize(std::cos(by) * axis_a + std::sin(by) * side);
+    // Rounding must not leave an axis outside.
+    return {axis, std::max(std::cos(angle) - 1e-5f, -1.f)};
+}
+
+float phi(const LightNode& node) { return luminance(glm::vec3(node.intensity)); }
+
+LightNode join(const LightNode& a, const LightNode& b) {
+    LightNode node{};
+    node.first = a.first;
+    node.count = a.count + b.count;
+    node.infinite = a.infinite;
+    const float sum = phi(a) + phi(b);
+    const float wa = sum > 0 ? phi(a) / sum : 0.5f;
+    const float wb = 1 - wa;
+    const glm::vec3 ca(a.centre);
+    const glm::vec3 cb(b.centre);
+    const glm::vec3 apart = cb - ca;
+    node.centre = float4(ca + wb * apart,
+                         wa * a.centre.w + wb * b.centre.w + wa * wb * glm::dot(apart, apart));
+    node.axis = wa * a.axis + wb * b.axis;
+    const glm::vec3 lower = glm::min(glm::vec3(a.lower), glm::vec3(b.lower));
+    const glm::vec3 upper = glm::max(glm::vec3(a.upper), glm::vec3(b.upper));
+    const glm::vec3 c(node.centre);
+    const float by_box = glm::length(glm::max(c - lower, upper - c));
+    const float by_children = std::max(glm::length(ca - c) + a.intensity.w,  //
+                                       glm::length(cb - c) + b.intensity.w);
+    node.intensity =
+        float4(glm::vec3(a.intensity) + glm::vec3(b.intensity), std::min(by_box, by_children));
+    const float4 cone = join_cones(float4(glm::vec3(a.cone), a.lower.w),  //
+                                   float4(glm::vec3(b.cone), b.lower.w));
+    node.lower = float4(lower, cone.w);
+    node.upper = float4(upper, std::min(a.upper.w, b.upper.w));
+    node.cone = float4(glm::vec3(cone), a.cone.w + b.cone.w);
+    return node;
+}
+
+struct Bin {
+    Bounds bounds;
+    float power = 0;
+    glm::vec3 axis{0};
+    std::uint32_t count = 0;
+
+    void add(const Bin& b) {
+        bounds.lower = glm::min(bounds.lower, b.bounds.lower);
+        bounds.upper = glm::max(bounds.upper, b.bounds.upper);
+        power += b.power;
+        axis += b.axis;
+        count += b.count;
+    }
+    [[nodiscard]] float cost() const {
+        const glm::vec3 diagonal = bounds.upper - bounds.lower;
+        const float spread = 2 - (power > 0 ? std::min(glm::length(axis) / power, 1.f) : 0);
+        return power * glm::dot(diagonal, diagonal) * spread;
+    }
+};
+
+class Builder {
+  public:
+    Builder(const std::vector<Light>& lights, LightTree& tree) : lights_(lights), tree_(tree) {
+        while ((1u << task_depth_) < 4 * std::max(std::thread::hardware_concurrency(), 1u))
+            ++task_depth_;
+    }
+
+    // Appends the tree of these lights.
+    void build(std::vector<Reference> references) {
+        if (references.empty()) return;
+        const std::size_t root = tree_.nodes.size();
+        first_light_ = tree_.lights.size();
+        references_ = std::move(references);
+        tree_.roots.push_back(static_cast<uint>(root));
+        tree_.nodes.resize(root + 2 * references_.size() - 1);
+        tree_.lights.resize(first_light_ + references_.size());
+        tree_.order.resize(tree_.lights.size());
+        build_node(root, 0, references_.size(), 0);
+    }
+
+  private:
+    void build_node(std::size_t index, std::size_t begin, std::size_t end, int depth) {
+        if (end - begin == 1) {
+            const std::size_t place = first_light_ + begin;
+            tree_.order[place] = references_[begin].light;
+            tree_.lights[place] = lights_[references_[begin].light];
+            tree_.nodes[index] = leaf_of(tree_.lights[place], static_cast<uint>(place));
+            return;
+        }
+        const std::size_t middle = split(begin, end, depth);
+        const std::size_t left = index + 1;
+        const std::size_t right = index + 2 * (middle - begin);
+        const auto build_right = [&] { build_node(right, middle, end, depth + 1); };
+        if (end - begin >= task_size && depth < task_depth_) {
+            const std::future<void> task = std::async(std::launch::async, build_right);
+            build_node(left, begin, middle, depth + 1);
+            task.wait();
+        } else {
+            build_node(left, begin, middle, depth + 1);
+            build_right();
+        }
+        tree_.nodes[index] = join(tree_.nodes[left], tree_.nodes[right]);
+    }
+
+    // Puts the left side's references first and returns where the right side's begin.
+    std::size_t split(std::size_t begin, std::size_t end, int depth) {
+        const std::size_t half = begin + (end - begin) / 2;
+        if (end - begin == 2 || depth >= deepest_split) return half;
+        Bounds bounds;
+        for (std::size_t i = begin; i < end; ++i) bounds.add(references_[i].position);
+        const glm::vec3 size = bounds.upper - bounds.lower;
+        const float longest = std::max({size.x, size.y, size.z});
+        glm::vec3 scale(0);
+        for (int axis = 0; axis < 3; ++axis)
+            if (size[axis] > 0 && std::isfinite(bin_count * 0.9999f / size[axis]))
+                scale[axis] = bin_count * 0.9999f / size[axis];
+        const auto bin_of = [&](const Reference& r, int axis) {
+            return static_cast<int>((r.position[axis] - bounds.lower[axis]) * scale[axis]);
+        };
+        std::array<std::array<Bin, bin_count>, 3> bins;
+        for (std::size_t i = begin; i < end; ++i)
+            for (int axis = 0; axis < 3; ++axis) {
+                Bin& bin = bins[axis][bin_of(references_[i], axis)];
+                bin.bounds.add(references_[i].position);
+                bin.power += references_[i].power;
+                bin.axis += references_[i].axis;
+                ++bin.count;
+            }
+        int best_axis = -1;
+        int best_bin = 0;
+        float best_cost = std::numeric_limits<float>::infinity();
+        for (int axis = 0; axis < 3; ++axis) {
+            if (scale[axis] == 0) continue;
+            std::array<float, bin_count> right_cost{};
+            Bin right;
+            for (int i = bin_count - 1; i > 0; --i) {
+                right.add(bins[axis][i]);
+                right_cost[i] = right.count > 0 ? right.cost() : -1;
+            }
+            Bin left;
+            for (int i = 1; i < bin_count; ++i) {
+                left.add(bins[axis][i - 1]);
+                if (left.count == 0 || right_cost[i] < 0) continue;
+                // Thin slices cost more, as in Conty Estevez and Kulla's equation (6).
+                const float cost = (left.cost() + right_cost[i]) * longest / size[axis];
+                if (cost < best_cost) {
+                    best_cost = cost;
+                    best_axis = axis;
+                    best_bin = i;
+                }
+            }
+        }
+        if (best_axis < 0) return half;
+        const auto first = references_.begin();
+        const auto middle = std::partition(
+            first + static_cast<std::ptrdiff_t>(begin), first + static_cast<std::ptrdiff_t>(end),
+            [&](const Reference& r) { return bin_of(r, best_axis) < best_bin; });
+        return static_cast<std::size_t>(middle - first);
+    }
+
+    const std::vector<Light>& lights_;
+    LightTree& tree_;
+    std::vector<Reference> references_;
+    std::size_t first_light_ = 0;
+    int task_depth_ = 0;
+};
+
+}  // namespace
+
+LightTree build_light_tree(const std::vector<Light>& lights) {
+    std::vector<Reference> directional;
+    std::vector<Reference> finite;
+    for (std::size_t i = 0; i < lights.size(); ++i) {
+        const Light& light = lights[i];
+        const LightNode leaf = leaf_of(light, 0);
+        const Reference r{glm::vec3(leaf.centre), light.emission.w,
+                          light.emission.w * glm::vec3(leaf.axis), static_cast<std::uint32_t>(i)};
+        (leaf.infinite ? directional : finite).push_back(r);
+    }
+    LightTree tree;
+    Builder builder(lights, tree);
+    builder.build(std::move(directional));
+    builder.build(std::move(finite));
+    return tree;
+}
+
+}  // namespace manylight

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: MIT
+#ifndef MANYLIGHT_SHARED_LIGHT_TREE_H
+#define MANYLIGHT_SHARED_LIGHT_TREE_H
+
+#include "shared/types.h"
+
+SHARED_BEGIN
+
+/// A node of a light tree (host/light_tree/): statistics and bounds of the lights first to first +
+/// count of the tree's order, world space, metres. Means are weighed by phi, the luminance of the
+/// intensity: cd (point, spot, oriented, on the axis where there is one), radiance times area for
+/// area lights, lx for directional lights.
+///
+/// Nodes are in depth-first order: the children of an inner node i are i + 1 and
+/// i + 2 * nodes[i + 1].count; a node of one light is a leaf. Where the lights are directional,
+/// positions are unit directions to the lights.
+typedef struct LightNode {
+    float4 centre;     // xyz: mean position; w: mean squared distance to it
+    float4 axis;       // xyz: mean emission axis, 0 for a light without one; w: phi's share of
+                       // lights without one (emitters of two sides count with half of theirs)
+    float4 intensity;  // rgb: sum; w: radius about the centre that holds all lights
+    float4 lower;      // xyz: bounds; w: cosine of the bound on the angle between cone and axes
+    float4 upper;      // xyz: bounds; w: cosine of the largest angle off its axis that a light
+                       // emits at, at most a right angle; below 0: everywhere
+    float4 cone;       // xyz: unit axis of the cone that holds all emission axes; w: sum of power
+    uint first;
+    uint count;
+    uint infinite;  // 1 where the lights are directional
+    uint padding;
+} LightNode;
+SHARED_SIZE(LightNode, 112)
+
+SHARED_END
+
+#endif
