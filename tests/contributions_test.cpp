@@ -78,7 +78,7 @@ TEST(contributions, hidden_lights_are_negative) {
 // A parallelogram and a triangle at height 1, at whose corner the ray leaves the plane: each is a
 // point at its centroid, f L A cos^2 / d^2.
 TEST(contributions, area_lights_are_judged_by_their_centroid) {
-    constexpr float s = 0.24f;
+    constexpr float s = 0.16f;
     const test::TestScene scene = test::make_scene(
         [](GltfWriter& out) {
             Mesh plane;

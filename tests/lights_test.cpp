@@ -108,13 +108,13 @@ TEST(lights, area_against_lamberts_formula) {
         return 0.6 / M_PI * 4 * light / 2 * (2 * r * std::atan(r));
     };
     FOR_EACH_DEVICE(device)
-    for (const float side : {0.1f, 1.0f, 3.0f}) {
+    for (const auto& [side, cells] : {std::pair(0.1f, 1u), {1.0f, 16u}, {3.0f, 144u}}) {
         const test::TestScene scene = plane_under([&](GltfWriter& out) {
             Mesh lamp;
             lamp.add_quad({-side / 2, 3.5f, -side / 2}, {side, 0, 0}, {0, 0, side});
             out.add_mesh("lamp", lamp, out.add_emitter(glm::vec3(9)));
         });
-        ASSERT_EQ(scene.scene.lights.size(), 1u);
+        ASSERT_EQ(scene.scene.lights.size(), cells);
         const double value = expected(side, 3.5, 9);
         EXPECT_NEAR(radiance(device, scene, 4096), value, 0.01 * value) << "side " << side;
         // Seen from behind it is dark.

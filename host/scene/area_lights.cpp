@@ -9,6 +9,15 @@
 namespace manylight {
 namespace {
 
+// Samplers give a light one weight for all its points, that of its centroid: a smaller cell's
+// weight is a better estimate of its contribution. So an emitter is cut to cells, each a light,
+// until no side is longer than cell_side, in m, or there are most_along_side of them along a side:
+// lights cost memory and time, and seen from afar a large emitter's cells are small. Where all
+// cells would still be more than most_cells, cell_side is doubled until they are not.
+constexpr double cell_side = 0.25;
+constexpr unsigned most_along_side = 64;
+constexpr std::size_t most_cells = 1'000'000;
+
 // How far, relative to its shorter side, a parallelogram's corners may be off.
 constexpr double corner_tolerance = 1e-4;
 // A length that exceeds another by less than this part is not longer, but rounded.
@@ -160,15 +169,62 @@ std::vector<Shape> find_shapes(const std::vector<Emitter>& emitters) {
     return shapes;
 }
 
+// Into how many parts a length is cut that are no longer than `side`, unless they are too many.
+unsigned parts_of(double length, double side) {
+    const double parts = std::ceil(length / (side * rounded));
+    return static_cast<unsigned>(std::clamp<double>(parts, 1, most_along_side));
+}
+
+// The numbers of cells along u and v; there are as many as their product. A triangle is cut to four
+// and these again, until the longest edge is short enough.
+glm::uvec2 cells_along(const Shape& s, double side) {
+    if (s.kind == LIGHT_QUAD)
+        return {parts_of(glm::length(s.u), side), parts_of(glm::length(s.v), side)};
+    const double longest = std::max({glm::length(s.u), glm::length(s.v), glm::length(s.u - s.v)});
+    return glm::uvec2(std::bit_ceil(parts_of(longest, side)));
+}
+
+// A side of cells for which there are at most most_cells; or one per shape, if those are more.
+double choose_side(const std::vector<Shape>& shapes) {
+    const auto count = [&shapes](double side) {
+        std::size_t cells = 0;
+        for (const Shape& s : shapes) {
+            const glm::uvec2 n = cells_along(s, side);
+            cells += std::size_t{n.x} * n.y;
+        }
+        return cells;
+    };
+    double side = cell_side;
+    while (count(side) > std::max(most_cells, shapes.size())) side *= 2;
+    return side;
+}
+
+void add_cells(std::vector<Light>& lights, const Shape& s, const Emitter& e, double side) {
+    const glm::uvec2 n = cells_along(s, side);
+    const glm::dvec3 u = s.u / static_cast<double>(n.x);
+    const glm::dvec3 v = s.v / static_cast<double>(n.y);
+    const auto add = [&](const glm::dvec3& corner, double sign) {
+        lights.push_back({float4(corner, s.kind), float4(sign * u, e.both_sides ? 1 : 0),
+                          float4(sign * v, s.offset), float4(e.radiance, 0)});
+    };
+    const bool triangle = s.kind == LIGHT_TRIANGLE;
+    for (unsigned j = 0; j < n.y; ++j)
+        for (unsigned i = 0; i < (triangle ? n.x - j : n.x); ++i) {
+            const glm::dvec3 corner =
+                s.corner + static_cast<double>(i) * u + static_cast<double>(j) * v;
+            add(corner, 1);
+            // The other half of the parallelogram of u and v, turned by 180 degrees.
+            if (triangle && i + j + 1 < n.x) add(corner + u + v, -1);
+        }
+}
+
 }  // namespace
 
 std::vector<Light> make_area_lights(const std::vector<Emitter>& emitters) {
+    const std::vector<Shape> shapes = find_shapes(emitters);
+    const double side = choose_side(shapes);
     std::vector<Light> lights;
-    for (const Shape& s : find_shapes(emitters)) {
-        const Emitter& e = emitters[s.emitter];
-        lights.push_back({float4(s.corner, s.kind), float4(s.u, e.both_sides ? 1 : 0),
-                          float4(s.v, s.offset), float4(e.radiance, 0)});
-    }
+    for (const Shape& s : shapes) add_cells(lights, s, emitters[s.emitter], side);
     return lights;
 }
 
