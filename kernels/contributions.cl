@@ -5,12 +5,10 @@
 #include "shared/contribution.h"
 #include "shared/tiles.h"
 
-// An emitter with area is judged by its centroid.
-#define CENTROID (float2)(1.0f / 3.0f)
-
 // contributions[row * light_count + light], cd/m2 (luminance): what the light would contribute to
-// the row's representative with V = 1; and the ray that has to be free. Rows are cut to packets of
-// 16 lights; item i is lane i % 16 of packet i / 16, the first of which is first_row's first.
+// the row's representative with V = 1, judged by its centroid; and the ray that has to be free.
+// Rows are cut to packets of 16 lights; item i is lane i % 16 of packet i / 16, the first of which
+// is first_row's first.
 KERNEL void contributions_aim(Camera camera, __global const Surface* surfaces,
                               __global const Material* materials, __global const Light* lights,
                               uint light_count, __global const uint* representatives,
@@ -29,7 +27,8 @@ KERNEL void contributions_aim(Camera camera, __global const Surface* surfaces,
     if (representative != NO_ITEM) {
         const Receiver receiver = make_receiver(surfaces + representative, materials, camera);
         Ray shadow;
-        value = luminance(unshadowed(&receiver, lights + light, CENTROID, &shadow));
+        const float2 u = light_centroid(lights + light);
+        value = luminance(unshadowed(&receiver, lights + light, u, &shadow));
         if (value > 0.0f) put_ray(rays, packet, lane, shadow);
         if (lane == 0u) origins[packet] = (float4)(shadow_origin(&receiver), 0.0f);
     }

@@ -98,7 +98,7 @@ class CommandTest(unittest.TestCase):
         self.assertNotIn("albedo", header)
 
     def test_emitter_points(self):
-        for points, lights in ((0, 2), (9, 9)):
+        for points, lights in ((0, 4), (9, 9)):
             self.run_program("render", self.cornell, "--height", 8, "--emitter-points", points,
                              "--stats", "s.json", "-q")
             self.assertEqual(json.loads((self.folder / "s.json").read_text())["lights"], lights)

@@ -2,7 +2,6 @@
 #include "reference/contributions.hpp"
 
 #include <bit>
-#include <cstring>
 
 #include "support.hpp"
 
@@ -15,6 +14,33 @@ TEST(contributions, agree_with_the_reference) {
         test::expect_pass(test::verifier(scene, device).contributions());
     }
 }
+
+namespace {
+
+// The matrix of the image's first pixel, which hits the scene, and of no representative.
+Matrix evaluate(Device device, const test::TestScene& scene) {
+    const unsigned lanes = lanes_for(device.info());
+    const WideBvh bvh = build_wide_bvh(scene.scene, lanes, lanes, 5);
+    const DeviceScene uploaded = upload_scene(device, scene.scene, bvh, scene.camera);
+    const Tiles tiles = all_tiles(8, 8, 8);
+    Buffer<Surface> surfaces = device.allocate<Surface>(64);
+    GBufferStage(device, uploaded).trace(tiles, {}, surfaces);
+    Matrix matrix(device, 2, static_cast<uint>(scene.scene.lights.size()));
+    const Buffer<uint> representatives = device.upload(std::vector<uint>{0, NO_ITEM});
+    ContributionStage(device, uploaded)
+        .evaluate(surfaces, representatives, 0, 2, matrix, [](std::size_t) {});
+    return matrix;
+}
+
+std::vector<float> values_of(const Matrix& matrix) {
+    std::vector<float> values;
+    for (const uint word : matrix.values.download()) values.push_back(std::bit_cast<float>(word));
+    return values;
+}
+
+constexpr float pi = 3.14159265f;
+
+}  // namespace
 
 // Two lights over a plane, one of them behind a board: values and signs by hand.
 TEST(contributions, hidden_lights_are_negative) {
@@ -31,22 +57,10 @@ TEST(contributions, hidden_lights_are_negative) {
             out.add_camera("down", {0, 4, 0.001f}, {0, 0, 0}, 0.002f, 1);
         },
         8, 8);
-    const float pi = 3.14159265f;
     FOR_EACH_DEVICE(device) {
-        Device d = device;
-        const unsigned lanes = lanes_for(d.info());
-        const WideBvh bvh = build_wide_bvh(scene.scene, lanes, lanes, 5);
-        const DeviceScene uploaded = upload_scene(d, scene.scene, bvh, scene.camera);
-        const Tiles tiles = all_tiles(8, 8, 8);
-        Buffer<Surface> surfaces = d.allocate<Surface>(64);
-        GBufferStage(d, uploaded).trace(tiles, {}, surfaces);
-        Matrix matrix(d, 2, 2);
-        const Buffer<uint> representatives = d.upload(std::vector<uint>{0, NO_ITEM});
-        ContributionStage(d, uploaded)
-            .evaluate(surfaces, representatives, 0, 2, matrix, [](std::size_t) {});
-        const std::vector<uint> words = matrix.values.download();
-        float values[4];
-        std::memcpy(values, words.data(), sizeof(values));
+        const Matrix matrix = evaluate(device, scene);
+        const std::vector<float> values = values_of(matrix);
+        ASSERT_EQ(values.size(), 4u);
         EXPECT_NEAR(values[0], 0.5f / pi * 8 / 4, 2e-3);  // f I / d^2, straight above
         // Direction (2, 2, 0): distance^2 8, cosine 1 / sqrt 2; the board is in between.
         EXPECT_NEAR(values[1], -0.5f / pi * 8 / 8 / std::sqrt(2.f), 2e-3);
@@ -58,6 +72,36 @@ TEST(contributions, hidden_lights_are_negative) {
         EXPECT_EQ(totals[0].visible_count, 1u);
         EXPECT_EQ(totals[0].facing_count, 2u);
         EXPECT_EQ(totals[1].facing_count, 0u);
+    }
+}
+
+// A parallelogram and a triangle at height 1, at whose corner the ray leaves the plane: each is a
+// point at its centroid, f L A cos^2 / d^2.
+TEST(contributions, area_lights_are_judged_by_their_centroid) {
+    constexpr float s = 0.16f;
+    const test::TestScene scene = test::make_scene(
+        [](GltfWriter& out) {
+            Mesh plane;
+            plane.add_quad({-5, 0, 5}, {10, 0, 0}, {0, 0, -10});
+            Mesh lamps;
+            lamps.add_quad({0, 1, 0}, {s, 0, 0}, {0, 0, s});
+            lamps.add_triangle({0, 1, 0}, {-s, 1, 0}, {0, 1, -s});
+            out.add_mesh("plane", plane, out.add_diffuse(glm::vec3(0.5f)));
+            out.add_mesh("lamps", lamps, out.add_emitter(glm::vec3(8)));
+            out.add_camera("beside", {0, 0.5f, 0.5f}, {0, 0, 0}, 0.0002f, 1);
+        },
+        8, 8);
+    ASSERT_EQ(scene.scene.lights.size(), 2u);
+    ASSERT_EQ(scene.scene.lights[0].position.w, LIGHT_QUAD);
+    ASSERT_EQ(scene.scene.lights[1].position.w, LIGHT_TRIANGLE);
+    const auto expected = [](float area, float x) {
+        const float d2 = 1 + 2 * x * x;
+        return 0.5f / pi * 8 * area / (d2 * d2);
+    };
+    FOR_EACH_DEVICE(device) {
+        const std::vector<float> values = values_of(evaluate(device, scene));
+        EXPECT_NEAR(values[0], expected(s * s, s / 2), 5e-4 * values[0]);
+        EXPECT_NEAR(values[1], expected(s * s / 2, s / 3), 5e-4 * values[1]);
     }
 }
 

@@ -268,7 +268,7 @@ TEST(frame, kernels_are_compiled_for_the_scene_at_hand) {
     };
     EXPECT_EQ(defines("points"), "POINT ");
     EXPECT_EQ(defines("oriented"), "EMISSION ORIENTED ");
-    EXPECT_EQ(defines("kinds"), "DIRECTIONAL EMISSION GGX POINT SMOOTH SPOT TRIANGLE ");
+    EXPECT_EQ(defines("kinds"), "DIRECTIONAL EMISSION GGX POINT QUAD SMOOTH SPOT TRIANGLE ");
 }
 
 }  // namespace manylight

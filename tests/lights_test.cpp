@@ -108,13 +108,13 @@ TEST(lights, area_against_lamberts_formula) {
         return 0.6 / M_PI * 4 * light / 2 * (2 * r * std::atan(r));
     };
     FOR_EACH_DEVICE(device)
-    for (const float side : {0.1f, 1.0f, 3.0f}) {
+    for (const auto& [side, cells] : {std::pair(0.1f, 1u), {1.0f, 16u}, {3.0f, 144u}}) {
         const test::TestScene scene = plane_under([&](GltfWriter& out) {
             Mesh lamp;
             lamp.add_quad({-side / 2, 3.5f, -side / 2}, {side, 0, 0}, {0, 0, side});
             out.add_mesh("lamp", lamp, out.add_emitter(glm::vec3(9)));
         });
-        ASSERT_EQ(scene.scene.lights.size(), 2u);
+        ASSERT_EQ(scene.scene.lights.size(), cells);
         const double value = expected(side, 3.5, 9);
         EXPECT_NEAR(radiance(device, scene, 4096), value, 0.01 * value) << "side " << side;
         // Seen from behind it is dark.
@@ -124,6 +124,66 @@ TEST(lights, area_against_lamberts_formula) {
             out.add_mesh("lamp", lamp, out.add_emitter(glm::vec3(9)));
         });
         EXPECT_EQ(radiance(device, back, 16), 0);
+    }
+}
+
+// Lambert's formula for any polygon, E = L / 2 * sum over its edges of the angle that an edge
+// subtends times the cosine between the receiver's normal and that of the triangle that the edge
+// makes with the receiver: lamps that are tilted and skewed.
+TEST(lights, tilted_area_lights_against_lamberts_formula) {
+    using Polygon = std::vector<glm::dvec3>;
+    const auto expected = [](const Polygon& corners) {
+        double sum = 0;
+        for (std::size_t i = 0; i < corners.size(); ++i) {
+            const glm::dvec3 a = glm::normalize(corners[i]);
+            const glm::dvec3 b = glm::normalize(corners[(i + 1) % corners.size()]);
+            sum += std::acos(glm::dot(a, b)) * glm::normalize(glm::cross(a, b)).y;
+        }
+        return 0.6 / M_PI * 9 / 2 * std::abs(sum);
+    };
+    const glm::dvec3 corner(-0.3, 1, 0.2);
+    const glm::dvec3 u(0.1, 0.3, 0.2);
+    const glm::dvec3 v(-0.1, 0.4, 0.9);
+    const Polygon triangle = {corner, corner + u, corner + v};
+    const Polygon parallelogram = {corner, corner + u, corner + u + v, corner + v};
+    FOR_EACH_DEVICE(device)
+    for (const Polygon& lamp : {triangle, parallelogram})
+        for (const bool back : {false, true}) {
+            const test::TestScene scene = plane_under([&](GltfWriter& out) {
+                Mesh mesh;
+                for (std::size_t i = 2; i < lamp.size(); ++i)
+                    mesh.add_triangle(lamp[0], lamp[back ? i : i - 1], lamp[back ? i - 1 : i]);
+                out.add_mesh("lamp", mesh, out.add_emitter(glm::vec3(9)));
+            });
+            test::TestScene both = scene;
+            for (Light& light : both.scene.lights) light.axis.w = 1;
+            const double value = expected(lamp);
+            EXPECT_NEAR(radiance(device, both, 4096), value, 0.01 * value) << lamp.size();
+            if (back)
+                EXPECT_EQ(radiance(device, scene, 16), 0) << lamp.size();
+            else
+                EXPECT_NEAR(radiance(device, scene, 4096), value, 0.01 * value) << lamp.size();
+        }
+}
+
+// Two triangles that are a parallelogram but for the tolerance: one light, which lies a little off
+// them, and which they do not hide.
+TEST(lights, bent_parallelograms_do_not_hide_themselves) {
+    const auto lamp = [](float bend) {
+        return plane_under([&](GltfWriter& out) {
+            Mesh mesh;
+            mesh.add_triangle({-0.1f, 3.5f, -0.1f}, {0.1f, 3.5f, -0.1f}, {-0.1f, 3.5f, 0.1f});
+            mesh.add_triangle({0.1f, 3.5f, -0.1f}, {0.1f, 3.5f + bend, 0.1f}, {-0.1f, 3.5f, 0.1f});
+            out.add_mesh("lamp", mesh, out.add_emitter(glm::vec3(9)));
+        });
+    };
+    const test::TestScene flat = lamp(0);
+    for (const float bend : {-7e-5f, 7e-5f}) {
+        const test::TestScene bent = lamp(bend);
+        ASSERT_EQ(bent.scene.lights.size(), 1u);
+        FOR_EACH_DEVICE(device)
+        EXPECT_NEAR(radiance(device, bent, 1024), radiance(device, flat, 1024),
+                    0.01 * radiance(device, flat, 1024));
     }
 }
 

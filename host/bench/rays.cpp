@@ -18,17 +18,19 @@ struct Segment {
 // The shadow ray from a surface to a light (to an area light's centroid), if they face each other.
 std::optional<Segment> segment_to(const Light& light, const Surface& surface) {
     const auto kind = static_cast<int>(light.position.w);
+    const bool area = kind == LIGHT_TRIANGLE || kind == LIGHT_QUAD;
     const glm::vec3 normal(surface.geometric);
     Segment s{glm::vec3(surface.position) + normal * surface.geometric.w, {}, 1};
     glm::vec3 target(light.position);
     glm::vec3 facing(0);
-    if (kind == LIGHT_TRIANGLE) {
-        target += (glm::vec3(light.axis) + glm::vec3(light.edge)) / 3.f;
+    if (area) {
+        const float centroid = kind == LIGHT_TRIANGLE ? 1.f / 3 : 0.5f;
+        target += (glm::vec3(light.axis) + glm::vec3(light.edge)) * centroid;
         facing = glm::normalize(glm::cross(glm::vec3(light.axis), glm::vec3(light.edge)));
     } else if (kind == LIGHT_ORIENTED) {
         facing = light.axis;
     }
-    if (kind == LIGHT_TRIANGLE || kind == LIGHT_ORIENTED) {
+    if (area || kind == LIGHT_ORIENTED) {
         if (glm::dot(facing, s.origin - target) <= 0) return {};
         target += facing * light.edge.w;
     }

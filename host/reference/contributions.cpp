@@ -5,10 +5,15 @@ namespace manylight::reference {
 
 Contribution contribution(const Tracer& tracer, const Surface& representative,
                           const Material& material, const Camera& camera, const Light& light) {
-    const Unshadowed u = unshadowed(representative, material, camera, light, centroid);
+    const Unshadowed u = unshadowed(representative, material, camera, light, centroid(light));
     Contribution c{luminance(u.value), false, u.shadow};
     if (c.value > 0) c.hidden = tracer.occluded(u.shadow);
     return c;
+}
+
+glm::dvec2 centroid(const Light& light) {
+    if (static_cast<LightKind>(light.position.w) == LIGHT_TRIANGLE) return {1.0 / 3, 1.0 / 3};
+    return {0.5, 0.5};
 }
 
 RowTotal row_total(std::span<const float> row) {

@@ -20,8 +20,8 @@ struct Contribution {
                                         const Material& material, const Camera& camera,
                                         const Light& light);
 
-/// Where stage contributions samples an area light.
-inline constexpr glm::dvec2 centroid{1.0 / 3, 1.0 / 3};
+/// Where stage contributions samples a light, in [0, 1)^2: the centroid of an area light.
+[[nodiscard]] glm::dvec2 centroid(const Light& light);
 
 /// A row's sums, from its entries as stored (negative: hidden).
 struct RowTotal {

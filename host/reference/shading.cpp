@@ -86,15 +86,22 @@ Emission oriented(const Light& light, const glm::dvec3& position) {
                       glm::dvec3(light.emission), light.edge.w, false);
 }
 
-Emission triangle(const Light& light, const glm::dvec3& position, glm::dvec2 u) {
-    // Which half of the square is decided in single precision.
-    if (static_cast<float>(u.x) + static_cast<float>(u.y) > 1) u = 1.0 - u;
+Emission quad(const Light& light, const glm::dvec3& position, const glm::dvec2& u) {
     const glm::dvec3 e1(light.axis);
     const glm::dvec3 e2(light.edge);
     const glm::dvec3 n = glm::cross(e1, e2);
-    const double area = glm::length(n) / 2;
-    return lambertian(position, glm::dvec3(light.position) + u.x * e1 + u.y * e2, n / (2 * area),
+    const double area = glm::length(n);
+    return lambertian(position, glm::dvec3(light.position) + u.x * e1 + u.y * e2, n / area,
                       glm::dvec3(light.emission) * area, light.edge.w, light.axis.w != 0);
+}
+
+// Half a parallelogram.
+Emission triangle(const Light& light, const glm::dvec3& position, glm::dvec2 u) {
+    // Which half of the square is decided in single precision.
+    if (static_cast<float>(u.x) + static_cast<float>(u.y) > 1) u = 1.0 - u;
+    Emission e = quad(light, position, u);
+    e.light /= 2;
+    return e;
 }
 
 Emission emission(const Light& light, const glm::dvec3& position, const glm::dvec2& u) {
@@ -109,6 +116,8 @@ Emission emission(const Light& light, const glm::dvec3& position, const glm::dve
             return oriented(light, position);
         case LIGHT_TRIANGLE:
             return triangle(light, position, u);
+        case LIGHT_QUAD:
+            return quad(light, position, u);
         case light_kind_count:
             break;
     }

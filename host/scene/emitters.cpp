@@ -3,32 +3,26 @@
 #include <cmath>
 #include <glm/gtc/constants.hpp>
 
-#include "scene/scene.hpp"
+#include "scene/area_lights.hpp"
 #include "shared/surface.h"
 
 namespace manylight {
 namespace {
-
-struct Emitter {
-    glm::vec3 corner, edge1, edge2;
-    glm::vec3 radiance;
-    bool both_sides;
-    float offset;
-    double power;  // lm
-};
 
 std::vector<Emitter> find_emitters(const Scene& scene) {
     std::vector<Emitter> emitters;
     for (std::size_t t = 0; t < scene.triangle_count(); ++t) {
         const Material& material = scene.materials[scene.triangle_materials[t]];
         if (glm::vec3(material.emission) == glm::vec3(0)) continue;
-        const glm::vec3 v0 = scene.vertices[scene.indices[3 * t]];
-        const glm::vec3 v1 = scene.vertices[scene.indices[3 * t + 1]];
-        const glm::vec3 v2 = scene.vertices[scene.indices[3 * t + 2]];
-        Emitter e{v0, v1 - v0, v2 - v0, material.emission, material.emission.w != 0, 0, 0};
-        const double area = glm::length(glm::dvec3(glm::cross(e.edge1, e.edge2))) / 2;
+        Emitter e{{}, material.emission, material.emission.w != 0, 0, 0, 0};
+        e.material = scene.triangle_materials[t];
+        glm::vec3 extent(0);
+        for (int corner = 0; corner < 3; ++corner) {
+            e.vertices[corner] = scene.vertices[scene.indices[3 * t + corner]];
+            extent = glm::max(extent, glm::abs(e.vertices[corner]));
+        }
+        const double area = glm::length(glm::dvec3(glm::cross(e.edge1(), e.edge2()))) / 2;
         if (!(area > 0)) continue;
-        const glm::vec3 extent = glm::max(glm::abs(v0), glm::max(glm::abs(v1), glm::abs(v2)));
         e.offset = OFFSET_SCALE * std::max({extent.x, extent.y, extent.z});
         e.power = glm::pi<double>() * area * luminance(e.radiance) * (e.both_sides ? 2 : 1);
         emitters.push_back(e);
@@ -36,17 +30,12 @@ std::vector<Emitter> find_emitters(const Scene& scene) {
     return emitters;
 }
 
-Light area_light(const Emitter& e) {
-    return {float4(e.corner, LIGHT_TRIANGLE), float4(e.edge1, e.both_sides ? 1 : 0),
-            float4(e.edge2, e.offset), float4(e.radiance, 0)};
-}
-
 // Emission of power `power` from the point (u, v) of one side of an emitter.
 Light oriented_point(const Emitter& e, glm::vec2 u, bool back, double power) {
     if (u.x + u.y > 1) u = 1.f - u;
     const glm::vec3 color = e.radiance / luminance(e.radiance);
-    const glm::vec3 normal = glm::normalize(glm::cross(e.edge1, e.edge2));
-    return {float4(e.corner + u.x * e.edge1 + u.y * e.edge2, LIGHT_ORIENTED),
+    const glm::vec3 normal = glm::normalize(glm::cross(e.edge1(), e.edge2()));
+    return {float4(e.vertices[0] + u.x * e.edge1() + u.y * e.edge2(), LIGHT_ORIENTED),
             float4(back ? -normal : normal, 0), float4(0, 0, 0, e.offset),
             float4(color * static_cast<float>(power / glm::pi<double>()), 0)};
 }
@@ -75,12 +64,10 @@ std::vector<Light> make_points(const std::vector<Emitter>& emitters, unsigned po
     return lights;
 }
 
-std::vector<Light> make_emitters(const Scene& scene, unsigned points) {
-    const std::vector<Emitter> emitters = find_emitters(scene);
-    if (points > 0) return make_points(emitters, points);
-    std::vector<Light> lights;
-    for (const Emitter& e : emitters) lights.push_back(area_light(e));
-    return lights;
+// The area of all emitting sides of the parallelogram of a light's axis and edge, m2.
+float parallelogram(const Light& light) {
+    const float area = glm::length(glm::cross(glm::vec3(light.axis), glm::vec3(light.edge)));
+    return area * (light.axis.w != 0 ? 2.f : 1.f);
 }
 
 // Fills emission.w of every light; see shared/light.h.
@@ -109,12 +96,12 @@ void set_powers(std::vector<Light>& lights, const Bounds& bounds) {
             case LIGHT_ORIENTED:
                 power = pi * brightness;
                 break;
-            case LIGHT_TRIANGLE: {
-                const float area =
-                    glm::length(glm::cross(glm::vec3(light.axis), glm::vec3(light.edge))) / 2;
-                power = pi * brightness * area * (light.axis.w != 0 ? 2.f : 1.f);
+            case LIGHT_TRIANGLE:
+                power = pi * brightness * parallelogram(light) / 2;
                 break;
-            }
+            case LIGHT_QUAD:
+                power = pi * brightness * parallelogram(light);
+                break;
             case light_kind_count:
                 break;
         }
@@ -124,8 +111,10 @@ void set_powers(std::vector<Light>& lights, const Bounds& bounds) {
 }  // namespace
 
 void add_emitters(Scene& scene, unsigned points) {
-    const std::vector<Light> emitters = make_emitters(scene, points);
-    scene.lights.insert(scene.lights.end(), emitters.begin(), emitters.end());
+    const std::vector<Emitter> emitters = find_emitters(scene);
+    const std::vector<Light> lights =
+        points > 0 ? make_points(emitters, points) : make_area_lights(emitters);
+    scene.lights.insert(scene.lights.end(), lights.begin(), lights.end());
     set_powers(scene.lights, scene.bounds());
 }
 

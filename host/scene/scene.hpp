@@ -71,8 +71,8 @@ struct Features {
 }
 
 /// Adds the lights of a scene's emissive triangles and sets the power of every light. `points` 0:
-/// one area light per triangle. Otherwise that many oriented points of equal power, spread over all
-/// emissive triangles by power (paper section 5); their total power, as luminance, is the
+/// area lights (see make_area_lights()). Otherwise that many oriented points of equal power, spread
+/// over all emissive triangles by power (paper section 5); their total power, as luminance, is the
 /// triangles'. Triangles without area emit nothing.
 void add_emitters(Scene& scene, unsigned points);
 

@@ -83,8 +83,8 @@ Check Verifier::contributions() {
         const double found = std::abs(matrix_[i]);
         double tolerance = shading_roundings * epsilon * expected.value;
         if (std::abs(found - expected.value) > tolerance / 4)
-            tolerance +=
-                reference::rounding_slack(surface, material, camera_, light, reference::centroid);
+            tolerance += reference::rounding_slack(surface, material, camera_, light,
+                                                   reference::centroid(light));
         check.compare(std::abs(found - expected.value), tolerance,
                       fmt::format("{}: {} is not {}", where, found, expected.value),
                       found == 0 && expected.value == 0);

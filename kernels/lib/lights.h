@@ -66,7 +66,7 @@ static LightSample light_directional(__global const Light* light, float3 positio
 }
 #endif
 
-#if HAS_ORIENTED || HAS_TRIANGLE
+#if HAS_ORIENTED || HAS_TRIANGLE || HAS_QUAD
 // Intensity I along the normal gives I cos / d^2. `normal` may have any length, which scales;
 // shadow rays end `offset` before the emitter. Normalises the direction.
 static void emit_cosine(LightSample* s, float3 intensity, float3 normal, float offset,
@@ -93,16 +93,29 @@ static LightSample light_oriented(__global const Light* light, float3 position, 
 }
 #endif
 
-#if HAS_TRIANGLE
-// A uniform point of the triangle; the normal's length is twice the area.
-static LightSample light_triangle(__global const Light* light, float3 position, float2 u) {
-    if (u.x + u.y > 1.0f) u = 1.0f - u;
-    const float3 edge1 = light->axis.xyz;
-    const float3 edge2 = light->edge.xyz;
-    LightSample s = sample_towards(position, light->position.xyz + edge1 * u.x + edge2 * u.y);
-    emit_cosine(&s, light->emission.xyz * 0.5f, cross(edge1, edge2), light->edge.w,
+#if HAS_TRIANGLE || HAS_QUAD
+// The point u of the parallelogram of axis and edge, `share` of which emits; the normal's length is
+// the parallelogram's area.
+static LightSample light_area(__global const Light* light, float3 position, float2 u, float share) {
+    const float3 axis = light->axis.xyz;
+    const float3 edge = light->edge.xyz;
+    LightSample s = sample_towards(position, light->position.xyz + axis * u.x + edge * u.y);
+    emit_cosine(&s, light->emission.xyz * share, cross(axis, edge), light->edge.w,
                 light->axis.w != 0.0f);
     return s;
+}
+#endif
+
+#if HAS_TRIANGLE
+static LightSample light_triangle(__global const Light* light, float3 position, float2 u) {
+    if (u.x + u.y > 1.0f) u = 1.0f - u;
+    return light_area(light, position, u, 0.5f);
+}
+#endif
+
+#if HAS_QUAD
+static LightSample light_quad(__global const Light* light, float3 position, float2 u) {
+    return light_area(light, position, u, 1.0f);
 }
 #endif
 
@@ -129,6 +142,10 @@ static LightSample sample_light(__global const Light* light, float3 position, fl
         case LIGHT_TRIANGLE:
             return light_triangle(light, position, u);
 #endif
+#if HAS_QUAD
+        case LIGHT_QUAD:
+            return light_quad(light, position, u);
+#endif
     }
     LightSample none = sample_towards(position, position);
     return none;
@@ -136,7 +153,13 @@ static LightSample sample_light(__global const Light* light, float3 position, fl
 
 // Whether every sample of the light is the same.
 static bool is_single_point(__global const Light* light) {
-    return (uint)light->position.w != LIGHT_TRIANGLE;
+    const uint kind = (uint)light->position.w;
+    return kind != LIGHT_TRIANGLE && kind != LIGHT_QUAD;
+}
+
+// The u for which sample_light() gives the centroid of a light with area.
+static float2 light_centroid(__global const Light* light) {
+    return (float2)((uint)light->position.w == LIGHT_TRIANGLE ? 1.0f / 3.0f : 0.5f);
 }
 
 #endif

@@ -13,10 +13,11 @@ SHARED_BEGIN
     X(spot, SPOT, 1)               \
     X(directional, DIRECTIONAL, 2) \
     X(oriented, ORIENTED, 3)       \
-    X(triangle, TRIANGLE, 4)
+    X(triangle, TRIANGLE, 4)       \
+    X(quad, QUAD, 5)
 
 #define LIGHT_KIND_VALUE(name, NAME, value) LIGHT_##NAME = value,
-enum LightKind { LIGHT_KINDS(LIGHT_KIND_VALUE) light_kind_count = 5 };
+enum LightKind { LIGHT_KINDS(LIGHT_KIND_VALUE) light_kind_count = 6 };
 #undef LIGHT_KIND_VALUE
 
 // clang-format off
@@ -28,14 +29,15 @@ enum LightKind { LIGHT_KINDS(LIGHT_KIND_VALUE) light_kind_count = 5 };
 /// directional -             unit, where it shines   -                illuminance, lx
 /// oriented    position      unit normal             -                intensity on the normal, cd
 /// triangle    vertex 0      vertex 1 - vertex 0     vertex 2 - 0     radiance, cd/m2
+/// quad        a corner      a side from there       the other side   radiance, cd/m2
 ///
 /// A spot's x and y are the angle scale and offset of KHR_lights_punctual; an oriented point is
-/// Lambert's (cosine).
+/// Lambert's (cosine). A quad is a parallelogram; it and a triangle face cross(axis, edge).
 // clang-format on
 typedef struct Light {
     float4 position;  // w: the LightKind
-    float4 axis;      // w: point, spot: range in m, 0 if unlimited; triangle: 1 if both sides emit
-    float4 edge;      // w: oriented, triangle: distance by which shadow rays end before the light
+    float4 axis;      // w: point, spot: range, m, 0 if none; triangle, quad: 1 if both sides emit
+    float4 edge;      // w: oriented, triangle, quad: how far before the light shadow rays end
     float4 emission;  // w: luminous power, lm (directional: through the scene's bounding disc)
 } Light;
 SHARED_SIZE(Light, 64)
