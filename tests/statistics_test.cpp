@@ -124,7 +124,9 @@ TEST(statistics, tails_of_the_distributions) {
     EXPECT_NEAR(test::chi_squared_tail(37.697, 15), 0.001, 5e-5);
 }
 
-// Every sampler that the table calls unbiased is, with 1, 4 and 16 light samples.
+// Every sampler that the table calls unbiased is, with 1, 4 and 16 light samples. Many of kinds'
+// lights are cells that a cluster's representative does not face: t is Student's only where each of
+// them was drawn often, which with few light samples takes more seeds.
 TEST(statistics, unbiased_samplers_are_unbiased) {
     FOR_EACH_DEVICE(device)
     for (const std::string name : {"points", "kinds", "oriented"}) {
@@ -136,8 +138,9 @@ TEST(statistics, unbiased_samplers_are_unbiased) {
             for (const uint light_samples : {1u, 4u, 16u}) {
                 SCOPED_TRACE(
                     fmt::format("{} on {}, {} light samples", sampler.name, name, light_samples));
+                const int seeds = name == "kinds" && light_samples < 16 ? 2000 : 200;
                 const Statistics s = judge(
-                    render_seeds(device, scene, options_for(sampler.name, light_samples), 200),
+                    render_seeds(device, scene, options_for(sampler.name, light_samples), seeds),
                     reference, scene);
                 EXPECT_GT(s.smallest_pixel, significance);
                 EXPECT_GT(s.mean, significance);
