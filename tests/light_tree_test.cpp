@@ -47,9 +47,9 @@ std::vector<Light> random_lights(int count, bool directional) {
                 break;
             case 3:
             case 4:
-                scene.lights.push_back({float4(p, LIGHT_TRIANGLE), float4(0.3f * n, i % 5 == 3),
-                                        float4(0.2f * random_direction(engine), 1e-5f),
-                                        float4(color, 0)});
+                scene.lights.push_back(
+                    {float4(p, i % 2 ? LIGHT_QUAD : LIGHT_TRIANGLE), float4(0.3f * n, i % 5 == 3),
+                     float4(0.2f * random_direction(engine), 1e-5f), float4(color, 0)});
                 break;
             default:
                 scene.lights.push_back({float4(0, 0, 0, LIGHT_DIRECTIONAL), float4(n, 0), float4(0),
@@ -88,12 +88,14 @@ TEST(light_tree, nodes_hold_their_lights) {
             if (node.infinite) return -glm::dvec3(l.axis);
             glm::dvec3 p(l.position);
             if (kind_of(l) == LIGHT_TRIANGLE) p += glm::dvec3(l.axis + l.edge) / 3.0;
+            if (kind_of(l) == LIGHT_QUAD) p += glm::dvec3(l.axis + l.edge) / 2.0;
             return p;
         };
         const auto intensity_of = [](const Light& l) {
             glm::dvec3 intensity(l.emission);
-            if (kind_of(l) == LIGHT_TRIANGLE)
-                intensity *= glm::length(glm::cross(glm::dvec3(l.axis), glm::dvec3(l.edge))) / 2;
+            const double area = glm::length(glm::cross(glm::dvec3(l.axis), glm::dvec3(l.edge)));
+            if (kind_of(l) == LIGHT_TRIANGLE) intensity *= area / 2;
+            if (kind_of(l) == LIGHT_QUAD) intensity *= area;
             return intensity;
         };
         for (uint k = node.first; k < node.first + node.count; ++k) {
@@ -115,11 +117,15 @@ TEST(light_tree, nodes_hold_their_lights) {
             const Light& l = tree.lights[k];
             const glm::dvec3 apart = place_of(l) - centre;
             double inner = 0;
-            if (kind_of(l) == LIGHT_TRIANGLE)  // over the triangle, from its corners
+            // Over a triangle from its corners, over a parallelogram from its sides.
+            if (kind_of(l) == LIGHT_TRIANGLE)
                 for (const glm::dvec3 corner :
                      {glm::dvec3(l.position), glm::dvec3(l.position + l.axis),
                       glm::dvec3(l.position + l.edge)})
                     inner += glm::dot(corner - place_of(l), corner - place_of(l)) / 12;
+            if (kind_of(l) == LIGHT_QUAD)
+                for (const glm::dvec3 side : {glm::dvec3(l.axis), glm::dvec3(l.edge)})
+                    inner += glm::dot(side, side) / 12;
             square += reference::luminance(intensity_of(l)) * (glm::dot(apart, apart) + inner);
         }
         EXPECT_LE(glm::length(sum - glm::dvec3(node.intensity)), 1e-4 * glm::length(sum));

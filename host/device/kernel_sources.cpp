@@ -10,10 +10,12 @@ namespace manylight {
 namespace {
 
 void append(std::string_view path, std::set<std::string, std::less<>>& done, std::string& out) {
-    if (!done.emplace(path).second) return;
     const auto source = kernel_sources.find(path);
     if (source == kernel_sources.end())
         throw std::logic_error(fmt::format("no kernel source named {}", path));
+    // A file without a guard is to be included as often as it says.
+    const bool guarded = source->second.find("#ifndef MANYLIGHT_") != std::string_view::npos;
+    if (guarded && !done.emplace(path).second) return;
     constexpr std::string_view directive = "#include \"";
     out += fmt::format("#line 1 \"{}\"\n", path);
     std::string_view rest = source->second;

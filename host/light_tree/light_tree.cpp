@@ -25,7 +25,8 @@ struct Reference {
 };
 
 bool has_area(const Light& light) {
-    return static_cast<LightKind>(light.position.w) == LIGHT_TRIANGLE;
+    const auto kind = static_cast<LightKind>(light.position.w);
+    return kind == LIGHT_TRIANGLE || kind == LIGHT_QUAD;
 }
 
 bool has_axis(const Light& light) {
@@ -42,10 +43,23 @@ glm::vec3 axis_of(const Light& light) {
     return has_area(light) ? glm::normalize(area_normal(light)) : glm::vec3(light.axis);
 }
 
-std::array<glm::vec3, 3> corners_of(const Light& light) {
+// Of an area light: where it lies.
+struct Extent {
+    std::array<glm::vec3, 4> corners;
+    glm::vec3 centre;
+    float area;
+    float mean_square;  // distance to the centre
+};
+
+Extent extent_of(const Light& light) {
     const glm::vec3 p(light.position);
-    if (!has_area(light)) return {p, p, p};
-    return {p, p + glm::vec3(light.axis), p + glm::vec3(light.edge)};
+    const glm::vec3 u(light.axis);
+    const glm::vec3 v(light.edge);
+    const float area = glm::length(area_normal(light));
+    const float squares = glm::dot(u, u) + glm::dot(v, v);
+    if (static_cast<LightKind>(light.position.w) == LIGHT_QUAD)
+        return {{p, p + u, p + v, p + u + v}, p + (u + v) / 2.f, area, squares / 12};
+    return {{p, p + u, p + v, p}, p + (u + v) / 3.f, area / 2, (squares - glm::dot(u, v)) / 18};
 }
 
 // A node of one light.
@@ -54,31 +68,29 @@ LightNode leaf_of(const Light& light, uint index) {
     LightNode node{};
     node.first = index;
     node.count = 1;
+    node.kind = kind;
     node.infinite = kind == LIGHT_DIRECTIONAL ? 1 : 0;
     Bounds bounds;
     glm::vec3 centre(0);
     glm::vec3 intensity(light.emission);
     float mean_square = 0;
+    float radius = 0;
     if (node.infinite) {
         centre = -glm::vec3(light.axis);
         bounds.add(centre);
-    } else {
-        const auto corners = corners_of(light);
-        for (const glm::vec3& corner : corners) {
+    } else if (has_area(light)) {
+        const Extent extent = extent_of(light);
+        centre = extent.centre;
+        intensity *= extent.area;
+        mean_square = extent.mean_square;
+        for (const glm::vec3& corner : extent.corners) {
             bounds.add(corner);
-            centre += corner / 3.f;
-        }
-        if (has_area(light)) {
-            intensity *= glm::length(area_normal(light)) / 2;
-            const glm::vec3 e1(light.axis);
-            const glm::vec3 e2(light.edge);
-            mean_square = (glm::dot(e1, e1) + glm::dot(e2, e2) - glm::dot(e1, e2)) / 18;
-        }
-    }
-    float radius = 0;
-    if (has_area(light))
-        for (const glm::vec3& corner : corners_of(light))
             radius = std::max(radius, glm::length(corner - centre));
+        }
+    } else {
+        centre = light.position;
+        bounds.add(centre);
+    }
     const glm::vec3 axis = axis_of(light);
     const bool two_sided = has_area(light) && light.axis.w != 0;
     node.centre = float4(centre, mean_square);
@@ -120,6 +132,7 @@ LightNode join(const LightNode& a, const LightNode& b) {
     node.first = a.first;
     node.count = a.count + b.count;
     node.infinite = a.infinite;
+    node.kind = NODE_GROUP;
     const float sum = phi(a) + phi(b);
     const float wa = sum > 0 ? phi(a) / sum : 0.5f;
     const float wb = 1 - wa;

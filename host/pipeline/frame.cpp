@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "clock.hpp"
+#include "pipeline/adaptive.hpp"
 #include "pipeline/aov.hpp"
 #include "stages/accumulate.hpp"
 #include "stages/samples.hpp"
@@ -31,7 +32,8 @@ class Stopwatch {
 struct Frame::Stages {
     DeviceScene scene;
     GBufferStage gbuffer;
-    SampleStage samples;
+    std::optional<SampleStage> samples;  // either of these two
+    std::optional<Adaptive> adaptive;
     AccumulateStage accumulate;
     std::optional<Clustering> clustering;
     Arguments tables;          // what the sampler draws from
@@ -40,11 +42,8 @@ struct Frame::Stages {
     Estimates estimates;
     ImageSum image;
 
-    Stages(Device& device, DeviceScene uploaded, const Sampler& sampler, std::size_t items)
-        : scene(std::move(uploaded)),
-          gbuffer(device, scene),
-          samples(device, scene, sampler.kernel_file, items),
-          accumulate(device, scene) {}
+    Stages(Device& device, DeviceScene uploaded)
+        : scene(std::move(uploaded)), gbuffer(device, scene), accumulate(device, scene) {}
 };
 
 Frame::Frame(const Device& device, const Scene& scene, const WideBvh& bvh, const Camera& camera,
@@ -70,17 +69,20 @@ Buffer<float4> Frame::allocate_zeros(std::size_t count) {
 
 void Frame::prepare() {
     const std::size_t pixels = std::size_t{options_.width} * options_.height;
-    const std::size_t items = std::size_t{plan_.tiles_per_batch} * options_.clusters.tile_size *
-                              options_.clusters.tile_size;
-    const bool tree = sampler_.table == Table::tree;
+    const std::size_t items =
+        std::size_t{plan_.tiles_per_batch} * options_.tile_size() * options_.tile_size();
+    const bool tree = sampler_.uses_tree();
     if (tree) {
         Stopwatch watch(result_.prepare_seconds, device_);
         tree_ = build_light_tree(scene_.lights);
     }
     stages_ = std::make_shared<Stages>(
-        device_, upload_scene(device_, scene_, bvh_, camera_, tree ? &tree_ : nullptr), sampler_,
-        items);
+        device_, upload_scene(device_, scene_, bvh_, camera_, tree ? &tree_ : nullptr));
     Stages& s = *stages_;
+    if (sampler_.table == Table::cuts)
+        s.adaptive.emplace(device_, s.scene, plan_.tiles_per_batch, options_.width, light_samples_);
+    else
+        s.samples.emplace(device_, s.scene, sampler_.kernel_file, items);
     s.surfaces = device_.allocate<Surface>(items);
     if (plan_.centres)
         s.centres = options_.jitters() ? device_.allocate<Surface>(items) : s.surfaces;
@@ -102,7 +104,7 @@ FrameResult Frame::render(Progress& progress) {
         if (std::ranges::count(options_.aovs, aov.name))
             result_.aovs.emplace_back(aov.name,
                                       Image(options_.width, options_.height, aov.channels));
-    Tiles batch = all_tiles(options_.width, options_.height, options_.clusters.tile_size);
+    Tiles batch = all_tiles(options_.width, options_.height, options_.tile_size());
     const uint tiles = batch.count;
     for (; batch.first < tiles; batch.first += plan_.tiles_per_batch) {
         batch.count = std::min(plan_.tiles_per_batch, tiles - batch.first);
@@ -131,7 +133,7 @@ double Frame::cluster_work(const Tiles& batch) const {
 
 // `work`: rays of the batch done so far, clusters first.
 void Frame::report(Progress& progress, const Tiles& batch, double work) const {
-    const Tiles all = all_tiles(options_.width, options_.height, options_.clusters.tile_size);
+    const Tiles all = all_tiles(options_.width, options_.height, options_.tile_size());
     const double samples =
         static_cast<double>(item_count(batch)) * options_.spp * std::max(light_samples_, 1u);
     const double share = work / (cluster_work(batch) + samples);
@@ -179,12 +181,18 @@ void Frame::sample(const Tiles& batch, Progress& progress) {
         const bool at_hand = !options_.jitters() && (i > 0 || plan_.centres);
         if (!at_hand) s.gbuffer.trace(batch, sample, s.surfaces);
         if (!at_hand || i == 0) result_.primary_rays += pixel_count(batch);
-        s.samples.draw(batch, sample, light_samples_, s.surfaces, s.tables, s.estimates,
-                       [&](std::size_t samples) {
-                           device_.finish();
-                           done += static_cast<double>(samples);
-                           report(progress, batch, done);
-                       });
+        const auto count = [&](std::size_t samples) {
+            device_.finish();
+            done += static_cast<double>(samples);
+            report(progress, batch, done);
+        };
+        if (s.adaptive) {
+            if (light_samples_ > 0 && i == 0) s.adaptive->start(batch, s.surfaces, options_.seed);
+            s.adaptive->draw(batch, sample, s.surfaces, s.estimates, count);
+        } else {
+            s.samples->draw(batch, sample, light_samples_, s.surfaces, s.tables, s.estimates,
+                            count);
+        }
         s.accumulate.add(batch, s.surfaces, s.estimates.sums, s.image);
     }
     device_.finish();

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "error.hpp"
+#include "pipeline/adaptive.hpp"
 #include "pipeline/aov.hpp"
 #include "stages/samples.hpp"
 
@@ -44,6 +45,10 @@ void check_buffers(const DeviceInfo& device, const Scene& scene, const WideBvh& 
 
 }  // namespace
 
+unsigned RenderOptions::tile_size() const {
+    return find_sampler(sampler).table == Table::cuts ? ADAPTIVE_TILE : clusters.tile_size;
+}
+
 std::size_t Plan::total_bytes() const {
     return scene_bytes + image_bytes + batch_bytes + (clusters ? 0 : matrix_bytes);
 }
@@ -51,7 +56,7 @@ std::size_t Plan::total_bytes() const {
 Plan make_plan(const DeviceInfo& device, const Scene& scene, const WideBvh& bvh,
                const RenderOptions& options) {
     const Sampler& sampler = find_sampler(options.sampler);
-    const unsigned size = options.clusters.tile_size;
+    const unsigned size = options.tile_size();
     const std::size_t tile_items = std::size_t{size} * size;
     const Tiles tiles = all_tiles(options.width, options.height, size);
     const auto lights = static_cast<uint>(scene.lights.size());
@@ -63,15 +68,17 @@ Plan make_plan(const DeviceInfo& device, const Scene& scene, const WideBvh& bvh,
                        bytes_of(scene.vertex_normals) + bytes_of(scene.indices) +
                        bytes_of(scene.triangle_materials) + bytes_of(scene.materials) +
                        bytes_of(scene.lights);
-    if (sampler.table == Table::tree) plan.scene_bytes += 2 * sizeof(LightNode) * lights;
+    if (sampler.uses_tree()) plan.scene_bytes += 2 * sizeof(LightNode) * lights;
     plan.image_bytes = std::size_t{options.width} * options.height * 2 * sizeof(float4);
     check_buffers(device, scene, bvh, plan.image_bytes / 2);
 
     const bool two_surfaces = plan.centres && options.jitters();
-    std::size_t tile_bytes = tile_items * (sizeof(Surface) * (two_surfaces ? 2 : 1) +
-                                           2 * sizeof(float4) + SampleStage::item_bytes());
+    const bool cuts = sampler.table == Table::cuts;
+    std::size_t tile_bytes =
+        tile_items * (sizeof(Surface) * (two_surfaces ? 2 : 1) + 2 * sizeof(float4));
+    tile_bytes += cuts ? Adaptive::tile_bytes() : tile_items * SampleStage::item_bytes();
     std::size_t tile_matrix = 0;
-    std::size_t ray_bytes = 0;
+    std::size_t ray_bytes = cuts ? Adaptive::fixed_bytes() : 0;
     if (plan.clusters) {
         tile_bytes += Clustering::tile_bytes(options.clusters, lights);
         ray_bytes = ContributionStage::ray_bytes(lights);
@@ -93,7 +100,9 @@ Plan make_plan(const DeviceInfo& device, const Scene& scene, const WideBvh& bvh,
             "{}: one tile's contribution matrix needs {}, and {} allows {} at most in a buffer (a "
             "smaller --max-depth or --tile-size needs less)",
             scene.file, mebibytes(tile_matrix), device.name, mebibytes(device.max_allocation));
-    std::size_t most = std::clamp<std::size_t>(items_per_batch / tile_items, 1, tiles.count);
+    // What sampler adaptive learns holds for a batch: as large as may be.
+    std::size_t most =
+        cuts ? tiles.count : std::clamp<std::size_t>(items_per_batch / tile_items, 1, tiles.count);
     most = std::min(most, (budget - fixed) / tile_bytes);
     if (tile_matrix > 0) most = std::min(most, device.max_allocation / tile_matrix);
     plan.tiles_per_batch = static_cast<unsigned>(most);

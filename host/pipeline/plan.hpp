@@ -18,6 +18,9 @@ struct RenderOptions {
     std::size_t memory = 0;  // bytes on the device; 0: half of it, at most 2 GiB
     std::vector<std::string> aovs;
 
+    /// Pixels of a tile's side: of the clusters, where the sampler leaves it open.
+    [[nodiscard]] unsigned tile_size() const;
+
     /// Whether pixel samples lie at random in their pixels.
     [[nodiscard]] bool jitters() const { return spp > 1 && !pixel_centre; }
 };

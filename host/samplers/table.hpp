@@ -15,6 +15,7 @@ enum class Table {
     none,
     power,     // one CDF by the lights' power, for the whole image
     tree,      // the light trees
+    cuts,      // a cut of the light trees per tile, and what was learned of its visibility
     clusters,  // a CDF per cluster of pixels, from the contribution matrix
 };
 
@@ -35,6 +36,8 @@ struct Sampler {
     Shares shares = {};
     std::string_view kernel_file;  // below kernels/
     reference::ChooseLight choose_light = nullptr;
+
+    [[nodiscard]] bool uses_tree() const { return table == Table::tree || table == Table::cuts; }
 };
 
 [[nodiscard]] std::span<const Sampler> all_samplers();

@@ -44,6 +44,10 @@ static uint lowest(uint lanes) { return 31u - (uint)clz(lanes & (0u - lanes)); }
 #define lanes_w JOIN(lanes_, BVH_WIDTH)
 #define lanes_k JOIN(lanes_, BVH_BLOCK)
 
+#define LANE(vector, lane) (((const float*)&(vector))[lane])
+#define SET_LANE(vector, lane, value) ((float*)&(vector))[lane] = (value)
+#define INT_LANE(vector, lane) (((int*)&(vector))[lane])
+
 // A segment origin + t direction, 0 < t < end.
 typedef struct Ray {
     float3 origin;

@@ -10,10 +10,6 @@
 // of all at once against one child after another.
 #define PACKET_FEW 8
 
-#define LANE(vector, lane) (((const float*)&(vector))[lane])
-#define SET_LANE(vector, lane, value) ((float*)&(vector))[lane] = (value)
-#define INT_LANE(vector, lane) (((int*)&(vector))[lane])
-
 // Segments origin + t direction, 0 < t < end; a lane whose end is not positive holds no ray.
 typedef struct Packet {
     float3 origin;

@@ -30,6 +30,10 @@ static uint step_bits(uint bits, uint i) {
 
 // The dimension that seeds the position of a pixel's samples; light samples use their own index.
 #define RANDOM_PIXEL_POSITION 0xffffffffu
+// The dimensions of one pass of sampler adaptive.
+#define RANDOM_DRAWS 1024u
+// The dimension that shifts the systematic draws of a pass.
+#define RANDOM_DRAW_SHIFT 0xfffffffdu
 
 // A float in [0, 1) from the top 24 bits.
 static float unit_float(uint bits) { return (float)(bits >> 8) * 0x1p-24f; }

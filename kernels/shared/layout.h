@@ -3,9 +3,11 @@
 #ifndef MANYLIGHT_SHARED_LAYOUT_H
 #define MANYLIGHT_SHARED_LAYOUT_H
 
+#include "shared/adaptive.h"
 #include "shared/camera.h"
 #include "shared/contribution.h"
 #include "shared/light.h"
+#include "shared/light_tree.h"
 #include "shared/material.h"
 #include "shared/surface.h"
 #include "shared/tiles.h"
@@ -22,6 +24,10 @@
     X(Region, x) X(Region, y) X(Region, size) X(Region, level) X(Region, first_sibling)            \
     X(Region, siblings)                                                                            \
     X(RowSum, visible) X(RowSum, unshadowed) X(RowSum, visible_count) X(RowSum, facing_count)      \
+    X(LightNode, centre) X(LightNode, axis) X(LightNode, intensity) X(LightNode, lower)            \
+    X(LightNode, upper) X(LightNode, cone) X(LightNode, first) X(LightNode, count)                 \
+    X(LightNode, infinite) X(LightNode, kind) X(Trials, traced) X(Trials, passed)                  \
+    X(Pass, first) X(Pass, count) X(Pass, number) X(Pass, first_tile) X(Pass, tile_count) X(Pass, packets) X(Budget, samples) X(Budget, factor) X(Budget, exposure) X(Expectation, variance) X(Expectation, luminance)                                                 \
     X(Mixture, visible) X(Mixture, unshadowed) X(Mixture, power) X(Mixture, total_power)
 // clang-format on
 

@@ -26,9 +26,11 @@ typedef struct LightNode {
     uint first;
     uint count;
     uint infinite;  // 1 where the lights are directional
-    uint padding;
+    uint kind;      // of a leaf its LightKind, of an inner node NODE_GROUP
 } LightNode;
 SHARED_SIZE(LightNode, 112)
+
+#define NODE_GROUP 100
 
 SHARED_END
 

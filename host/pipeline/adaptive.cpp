@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: MIT
+#include "pipeline/adaptive.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace manylight {
+namespace {
+
+constexpr uint small_cut = 128;
+constexpr uint many_lights = 20'000;
+constexpr uint many_samples = 8;
+constexpr unsigned wide_image = 640;  // pixels: tiles are small, one probe per node will do
+constexpr uint most_samples = 16;     // on average, of one draw of all nodes
+
+}  // namespace
+
+Adaptive::Adaptive(Device& device, const DeviceScene& scene, unsigned most_tiles, unsigned width,
+                   uint light_samples)
+    : cut_stage_(device, scene),
+      visibility_stage_(device, scene),
+      adaptive_stage_(device, scene, most_packets,
+                      std::size_t{most_tiles} * CELLS_PER_TILE * most_places),
+      cuts_(device, most_tiles),
+      visibility_(device, most_tiles),
+      light_count_(scene.light_count),
+      width_(width),
+      light_samples_(light_samples) {}
+
+void Adaptive::start(const Tiles& tiles, const Buffer<Surface>& surfaces, uint seed) {
+    const bool large = light_count_ <= CUT_CAPACITY || light_count_ > many_lights ||
+                       light_samples_ >= many_samples;
+    const CutOptions options{large ? CUT_CAPACITY : small_cut, width_ >= wide_image ? 1u : 4u,
+                             seed};
+    cut_stage_.make(tiles, surfaces, options, cuts_);
+    visibility_.counts.clear();
+    visibility_stage_.estimate(tiles, cuts_, visibility_);
+    fresh_ = true;
+    factor_ = 0;
+}
+
+void Adaptive::draw(const Tiles& tiles, const PixelSample& sample, const Buffer<Surface>& surfaces,
+                    Estimates& estimates, const std::function<void(std::size_t)>& progress) {
+    // The first pixels were drawn from next to no knowledge: they are drawn once more, afresh.
+    const std::vector<Pass> first_passes = {{0, 1, 0, 0, 0, 0},
+                                            {1, 3, 0, 0, 0, 0},
+                                            {4, 4, 0, 0, 0, 0},
+                                            {8, 8, 0, 0, 0, 0},
+                                            {0, 1, 1, 0, 0, 0}};
+    const std::vector<Pass> passes = {{0, 8, 0, 0, 0, 0}, {8, 8, 0, 0, 0, 0}};
+    const uint rounds = (light_samples_ + most_samples - 1) / most_samples;
+    const float samples = static_cast<float>(light_samples_) / static_cast<float>(rounds);
+    for (uint round = 0; round < rounds; ++round) {
+        for (Pass pass : fresh_ ? first_passes : passes) {
+            pass.number += 2 * round;
+            pass_over(tiles, pass, sample, samples, surfaces, 1.f / static_cast<float>(rounds),
+                      round == 0, estimates, progress);
+        }
+        fresh_ = false;
+    }
+}
+
+void Adaptive::pass_over(const Tiles& tiles, Pass pass, const PixelSample& sample, float samples,
+                         const Buffer<Surface>& surfaces, float weight, bool start,
+                         Estimates& estimates, const std::function<void(std::size_t)>& progress) {
+    pass.packets = static_cast<uint>(std::ceil(samples * MOST_DRAWS / 16));
+    const std::size_t tile_packets = std::size_t{CELLS_PER_TILE} * pass.count * pass.packets;
+    const uint tiles_at_once =
+        static_cast<uint>(std::max<std::size_t>(most_packets / tile_packets, 1));
+    const Budget budget{samples, factor_ * samples, exposure_};
+    for (; pass.first_tile < tiles.count; pass.first_tile += tiles_at_once) {
+        pass.tile_count = std::min(tiles_at_once, tiles.count - pass.first_tile);
+        adaptive_stage_.draw(tiles, pass, budget, sample, surfaces, cuts_, visibility_, weight,
+                             start, estimates);
+        visibility_stage_.learn(pass, adaptive_stage_.draws(), visibility_);
+        progress(static_cast<std::size_t>(static_cast<float>(pass_pixels(pass)) * samples));
+    }
+    visibility_stage_.estimate(tiles, cuts_, visibility_);
+    set_budget(
+        adaptive_stage_.expectations(std::size_t{tiles.count} * CELLS_PER_TILE * pass.count));
+}
+
+// Finds the factor for which these pixels would get one draw each on average.
+void Adaptive::set_budget(const std::vector<Expectation>& pixels) {
+    double luminance = 0;
+    std::size_t lit = 0;
+    for (const Expectation& e : pixels) {
+        luminance += e.luminance;
+        lit += e.variance > 0;
+    }
+    if (!(luminance > 0)) return;
+    const double exposure = 0.5 * static_cast<double>(pixels.size()) / luminance;
+    std::vector<double> deviations;
+    deviations.reserve(lit);
+    for (const Expectation& e : pixels)
+        if (e.variance > 0)
+            deviations.push_back(
+                exposure * std::sqrt(e.variance / (std::pow(exposure * e.luminance, 2) + 0.01)));
+    double low = 0;
+    double high = 1;
+    const auto mean_draws = [&](double factor) {
+        double sum = 0;
+        for (const double d : deviations)
+            sum += std::clamp<double>(d * factor, FEWEST_DRAWS, MOST_DRAWS);
+        return sum / static_cast<double>(deviations.size());
+    };
+    while (mean_draws(high) < 1 && high < 1e30) high *= 2;
+    for (int i = 0; i < 40; ++i) {
+        const double middle = (low + high) / 2;
+        (mean_draws(middle) < 1 ? low : high) = middle;
+    }
+    factor_ = static_cast<float>(high);
+    exposure_ = static_cast<float>(exposure);
+}
+
+}  // namespace manylight

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <functional>
+
+#include "stages/adaptive.hpp"
+
+namespace manylight {
+
+/// Sampler adaptive on a batch of tiles: pixels in interleaved passes, each of which learns from
+/// the shadow rays of those before it.
+class Adaptive {
+  public:
+    /// Holds up to `most_tiles` tiles. `width`: of the image, pixels.
+    Adaptive(Device& device, const DeviceScene& scene, unsigned most_tiles, unsigned width,
+             uint light_samples);
+
+    /// Cuts the light trees for tiles, from their first surfaces; forgets what was learned.
+    void start(const Tiles& tiles, const Buffer<Surface>& surfaces, uint seed);
+
+    /// Fills the estimates of one sample of every pixel. `progress` is called with the light
+    /// samples done, over all pixels, after each launch.
+    void draw(const Tiles& tiles, const PixelSample& sample, const Buffer<Surface>& surfaces,
+              Estimates& estimates, const std::function<void(std::size_t)>& progress);
+
+    /// Bytes on the device for each tile, and besides.
+    [[nodiscard]] static constexpr std::size_t tile_bytes() {
+        return Cuts::tile_bytes() + Visibility::tile_bytes() +
+               CELLS_PER_TILE * most_places * sizeof(Expectation);
+    }
+    [[nodiscard]] static constexpr std::size_t fixed_bytes() {
+        return most_packets * AdaptiveStage::packet_bytes();
+    }
+
+  private:
+    void pass_over(const Tiles& tiles, Pass pass, const PixelSample& sample, float samples,
+                   const Buffer<Surface>& surfaces, float weight, bool start, Estimates& estimates,
+                   const std::function<void(std::size_t)>& progress);
+    void set_budget(const std::vector<Expectation>& pixels);
+
+    static constexpr uint most_places = 8;                             // of a cell in one pass
+    static constexpr std::size_t most_packets = std::size_t{1} << 16;  // of one launch
+
+    CutStage cut_stage_;
+    VisibilityStage visibility_stage_;
+    AdaptiveStage adaptive_stage_;
+    Cuts cuts_;
+    Visibility visibility_;
+    uint light_count_;
+    unsigned width_;
+    uint light_samples_;
+    bool fresh_ = true;  // nothing was learned yet
+    float factor_ = 0;   // see Budget; for one draw on average
+    float exposure_ = 0;
+};
+
+}  // namespace manylight

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: MIT
+#include "stages/visibility.hpp"
+
+namespace manylight {
+namespace {
+
+constexpr std::size_t group = 8;  // slots of a work-item of visibility_estimate
+
+}  // namespace
+
+Visibility::Visibility(Device& device, std::size_t tiles)
+    : counts(device.allocate<uint>(tiles * CUT_CAPACITY * CELLS_PER_TILE)),
+      totals(device.allocate<Trials>(tiles * CUT_CAPACITY)),
+      roots(device.allocate<float>(tiles * CUT_CAPACITY * CELLS_PER_TILE)) {}
+
+Arguments Visibility::arguments() const {
+    return Arguments().set("counts", counts).set("totals", totals).set("roots", roots);
+}
+
+VisibilityStage::VisibilityStage(Device& device, const DeviceScene& scene) {
+    const auto kernel = [&](const char* name) {
+        return device.kernel("visibility.cl", name, scene.traversal, "visibility");
+    };
+    learn_ = kernel("visibility_learn");
+    sum_ = kernel("visibility_sum");
+    estimate_ = kernel("visibility_estimate");
+}
+
+void VisibilityStage::learn(const Pass& pass, const Arguments& draws, Visibility& out) {
+    learn_.launch(std::size_t{pass.tile_count} * CELLS_PER_TILE,
+                  Arguments(draws).set(out.arguments()).set("pass", pass));
+}
+
+void VisibilityStage::estimate(const Tiles& tiles, const Cuts& cuts, Visibility& out) {
+    const Arguments arguments = cuts.arguments().set(out.arguments()).set("tiles", tiles);
+    sum_.launch(std::size_t{tiles.count} * CUT_CAPACITY, arguments);
+    estimate_.launch(std::size_t{tiles.count} * CUT_CAPACITY / group, arguments);
+}
+
+}  // namespace manylight

@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: MIT
+// Stage cuts: for each tile a cut through the light trees, fine where much light may come from, and
+// a first look at what is visible.
+#include "lib/light_tree.h"
+#include "lib/random.h"
+#include "lib/tiles.h"
+#include "shared/adaptive.h"
+
+// Surfaces of a tile that stand for it.
+#define REPRESENTATIVES 9u
+// Distances count as this times a node's radius at least: a bound at no distance says nothing.
+#define NEAREST 0.1f
+// The dimension of the random numbers of a tile's probes.
+#define RANDOM_PROBES 0xfffffffeu
+// What a node's children take over of its trials.
+#define INHERITED 0.5f
+// The share of rays that pass where none was traced yet, worth one ray.
+#define PRIOR_SHARE 0.7f
+
+// A cut in work: a list in tree order.
+typedef struct Cut {
+    uint nodes[CUT_CAPACITY];
+    float scores[CUT_CAPACITY];  // what makes splitting it worth while; 0 for leaves
+    Trials trials[CUT_CAPACITY];
+    uint next[CUT_CAPACITY];  // place in these arrays
+    uint size;
+} Cut;
+
+// Up to REPRESENTATIVES items of a tile that hit the scene: the nine of a regular grid, or whatever
+// there is.
+static uint find_representatives(Tiles tiles, uint tile, __global const Surface* surfaces,
+                                 uint* items) {
+    uint count = 0u;
+    const uint area = tiles.size * tiles.size;
+    const uint2 corner =
+        (uint2)((tiles.first + tile) % tiles.columns, (tiles.first + tile) / tiles.columns) *
+        tiles.size;
+    for (uint i = 0u; i < 9u; ++i) {
+        const uint2 pixel =
+            corner + (uint2)(2u * (i % 3u) + 1u, 2u * (i / 3u) + 1u) * tiles.size / 6u;
+        const uint item = pixel_item(tiles, pixel.x, pixel.y);
+        if (item_in_image(tiles, item) && !surface_missed(surfaces + item)) items[count++] = item;
+    }
+    for (uint i = 0u; i < area && count == 0u; ++i) {
+        const uint item = tile * area + i;
+        if (item_in_image(tiles, item) && !surface_missed(surfaces + item)) items[count++] = item;
+    }
+    return count;
+}
+
+// Traces `probes` rays from the representatives to lights of a node, each drawn by power.
+static Trials probe(BVH_PARAMETERS, __global const LightNode* nodes, __global const Light* lights,
+                    const Receiver* receivers, uint receiver_count, uint node, uint probes,
+                    uint bits) {
+    Trials trials = {0.0f, 0.0f};
+    for (uint i = 0u; i < probes; ++i) {
+        const uint ray_bits = step_bits(bits, i);
+        float u = unit_float(ray_bits);
+        uint at = node;
+        while (nodes[at].count > 1u) {
+            const uint right = at + 2u * nodes[at + 1u].count;
+            const float a = nodes[at + 1u].cone.w;
+            const float sum = a + nodes[right].cone.w;
+            const float p = sum > 0.0f ? a / sum : 0.5f;
+            const bool go_left = u < p;
+            u = min(go_left ? u / p : (u - p) / (1.0f - p), 0x1.fffffep-1f);
+            at = go_left ? at + 1u : right;
+        }
+        const uint r = (i + ray_bits % receiver_count) % receiver_count;
+        const uint light = nodes[at].first;
+        Ray shadow;
+        const float3 value =
+            unshadowed(receivers + r, lights + light, light_centroid(lights + light), &shadow);
+        if (!any(value != 0.0f)) continue;
+        trials.traced += 1.0f;
+        if (!occluded(BVH_ARGUMENTS, shadow)) trials.passed += 1.0f;
+    }
+    return trials;
+}
+
+static float visible_root(Trials t) { return sqrt((t.passed + PRIOR_SHARE) / (t.traced + 1.0f)); }
+
+// cut_nodes[tile * CUT_CAPACITY + slot], in tree order, and probes[...]; cut_sizes[tile], 0 where
+// nothing is hit. A tile with up to CUT_CAPACITY lights has every light as a node.
+KERNEL void cuts_make(Tiles tiles, Camera camera, __global const Surface* surfaces,
+                      __global const Material* materials, __global const Light* lights,
+                      uint light_count, __global const LightNode* nodes, uint root_count,
+                      uint second_root, uint cut_size, uint probe_rays, uint seed, BVH_PARAMETERS,
+                      __global uint* cut_nodes, __global uint* cut_sizes, __global Trials* probes) {
+    const uint tile = get_global_id(0);
+    if (tile >= tiles.count) return;
+    uint items[REPRESENTATIVES];
+    const uint receiver_count = find_representatives(tiles, tile, surfaces, items);
+    cut_sizes[tile] = 0u;
+    if (receiver_count == 0u) return;
+    Receiver receivers[REPRESENTATIVES];
+    for (uint i = 0u; i < receiver_count; ++i)
+        receivers[i] = make_receiver(surfaces + items[i], materials, camera);
+    __global uint* out = cut_nodes + tile * CUT_CAPACITY;
+    __global Trials* out_trials = probes + tile * CUT_CAPACITY;
+    const uint tile_bits = random_bits(tiles.first + tile, 0u, RANDOM_PROBES, seed).x;
+    if (light_count <= cut_size) {
+        const uint node_count = 2u * light_count - root_count;
+        uint size = 0u;
+        for (uint node = 0u; node < node_count; ++node) {
+            if (nodes[node].count > 1u) continue;
+            out_trials[size] = probe(BVH_ARGUMENTS, nodes, lights, receivers, receiver_count, node,
+                                     probe_rays, step_bits(tile_bits, node));
+            out[size++] = node;
+        }
+        cut_sizes[tile] = size;
+        return;
+    }
+    Cut cut;
+    cut.size = root_count;
+    const Trials none = {0.0f, 0.0f};
+    for (uint i = 0u; i < root_count; ++i) {
+        cut.nodes[i] = i == 0u ? 0u : second_root;
+        cut.scores[i] = nodes[cut.nodes[i]].count > 1u ? INFINITY : 0.0f;
+        cut.trials[i] = none;
+        cut.next[i] = i + 1u;
+    }
+    while (cut.size < cut_size) {
+        uint worst = 0u;
+        for (uint i = 1u; i < cut.size; ++i)
+            if (cut.scores[i] > cut.scores[worst]) worst = i;
+        if (cut.scores[worst] <= 0.0f) break;
+        const uint node = cut.nodes[worst];
+        const Trials parent = cut.trials[worst];
+        const uint added = cut.size++;
+        cut.next[added] = cut.next[worst];
+        cut.next[worst] = added;
+        for (uint child = 0u; child < 2u; ++child) {
+            const uint place = child == 0u ? worst : added;
+            const uint at = child == 0u ? node + 1u : node + 2u * nodes[node + 1u].count;
+            Trials trials = probe(BVH_ARGUMENTS, nodes, lights, receivers, receiver_count, at,
+                                  probe_rays, step_bits(tile_bits, at));
+            trials.traced += INHERITED * parent.traced;
+            trials.passed += INHERITED * parent.passed;
+            float score = 0.0f;
+            if (nodes[at].count > 1u) {
+                for (uint i = 0u; i < receiver_count; ++i)
+                    score += node_importance(nodes + at, receivers + i, NEAREST);
+                score *= visible_root(trials);
+            }
+            cut.nodes[place] = at;
+            cut.scores[place] = score;
+            cut.trials[place] = trials;
+        }
+    }
+    uint place = 0u;
+    for (uint i = 0u; i < cut.size; ++i) {
+        out[i] = cut.nodes[place];
+        out_trials[i] = cut.trials[place];
+        place = cut.next[place];
+    }
+    cut_sizes[tile] = cut.size;
+}

@@ -1,0 +1,404 @@
+// SPDX-License-Identifier: MIT
+// Sampler adaptive: lights drawn from the nodes of the tile's cut by what each contributes to the
+// pixel, and by what earlier passes saw of it from the pixel's cell.
+#include "lib/cells.h"
+#include "lib/direct.h"
+#include "lib/random.h"
+#include "lib/rays.h"
+#include "shared/light_tree.h"
+
+#define LANES 1
+#include "lib/node_estimate.h"
+#undef LANES
+#define LANES 16
+#include "lib/node_estimate.h"
+
+// The share of what is thought to be visible that is taken from the nodes' estimates rather than
+// from shadow rays: a control variate.
+#define CONTROL 0.8f
+// A node is replaced by its children where its weight times its angular size exceeds this share of
+// the weight of one draw.
+#define REFINED_SHARE 0.25f
+#define MOST_SPLITS 64u
+#define MOST_NODES (CUT_CAPACITY + MOST_SPLITS)
+
+static uint node_entry(__global const LightNode* nodes, uint node, uint slot) {
+    const uint kind = nodes[node].kind;
+    const bool point = kind != NODE_GROUP && kind != LIGHT_TRIANGLE && kind != LIGHT_QUAD;
+    return (slot << 24) | node | (point ? SINGLE_POINT : 0u);
+}
+
+static Points_1 point_of(const Receiver* r) {
+    Points_1 p;
+    p.px = r->position.x;
+    p.py = r->position.y;
+    p.pz = r->position.z;
+    p.nx = r->normal.x;
+    p.ny = r->normal.y;
+    p.nz = r->normal.z;
+    p.red = r->material.base_color.x;
+    p.green = r->material.base_color.y;
+    p.blue = r->material.base_color.z;
+#if HAS_GGX
+    p.vx = r->to_camera.x;
+    p.vy = r->to_camera.y;
+    p.vz = r->to_camera.z;
+    p.metallic = r->material.base_color.w;
+    p.alpha = r->material.roughness;
+    p.specular = r->material.specular;
+#endif
+    return p;
+}
+
+#define SET_POINT(field) ((float*)&all->field)[lane] = one.field
+
+static void set_point(Points_16* all, uint lane, Points_1 one) {
+    SET_POINT(px);
+    SET_POINT(py);
+    SET_POINT(pz);
+    SET_POINT(nx);
+    SET_POINT(ny);
+    SET_POINT(nz);
+    SET_POINT(red);
+    SET_POINT(green);
+    SET_POINT(blue);
+#if HAS_GGX
+    SET_POINT(vx);
+    SET_POINT(vy);
+    SET_POINT(vz);
+    SET_POINT(metallic);
+    SET_POINT(alpha);
+    SET_POINT(specular);
+#endif
+}
+
+// The weights of 16 pixels' nodes, of which the first `size` are in use.
+typedef struct Weights {
+    float16 values[MOST_NODES];
+    uint entries[MOST_NODES];
+    uint size;
+    float16 sum;
+    float16 visible_sum;  // of V^ x weight
+    Color_16 control;     // of V^ x estimate
+} Weights;
+
+static void add_color(Color_16* sum, Color_16 c, float16 factor) {
+    sum->red = fma(c.red, factor, sum->red);
+    sum->green = fma(c.green, factor, sum->green);
+    sum->blue = fma(c.blue, factor, sum->blue);
+}
+
+// A node's weight: its contribution's luminance x sqrt(V^). Adds to the sums, or takes away.
+static float16 weigh(Weights* w, __global const LightNode* node, __global const Light* lights,
+                     const Points_16* points, float16 root, float sign) {
+    const Color_16 c = node_estimate_16(node, lights, points);
+    const float16 visibility = sign * root * root;
+    add_color(&w->control, c, visibility);
+    const float16 value = color_luminance_16(c) * root;
+    w->sum = fma(value, sign, w->sum);
+    w->visible_sum = fma(value, visibility, w->visible_sum);
+    return value;
+}
+
+// Whether any pixel wants the node's children: where its lights lie close, its estimate is coarse.
+static bool wants_children(__global const LightNode* node, const Points_16* p, float16 weight,
+                           float16 limit) {
+    const float16 dx = node->centre.x - p->px, dy = node->centre.y - p->py,
+                  dz = node->centre.z - p->pz;
+    const float16 distance = sqrt(fma(dx, dx, fma(dy, dy, dz * dz)));
+    const float16 near = node->infinite ? (float16)(node->intensity.w)
+                                        : min(node->intensity.w / max(distance, 1e-20f), 1.0f);
+    return lanes_16(weight * near > limit) != 0u;
+}
+
+// The weights of a cut's nodes; what is close to a pixel is refined. The first MOST_SPLITS places
+// stay free at first, so that the second pass can write what it reads.
+static void weigh_nodes(Weights* w, __global const LightNode* nodes, __global const Light* lights,
+                        __global const uint* cut, uint cut_size, __global const float16* roots,
+                        const Points_16* points, int16 valid, float samples) {
+    const float16 zero = (float16)(0.0f);
+    w->sum = w->visible_sum = zero;
+    w->control.red = w->control.green = w->control.blue = zero;
+    for (uint slot = 0u; slot < cut_size; ++slot) {
+        const float16 root = select(zero, roots[slot], valid);
+        w->values[MOST_SPLITS + slot] = weigh(w, nodes + cut[slot], lights, points, root, 1.0f);
+    }
+    uint splits = 0u;
+    w->size = 0u;
+    uint stack[MOST_SPLITS + 1u];
+    float16 stack_values[MOST_SPLITS + 1u];
+    for (uint slot = 0u; slot < cut_size; ++slot) {
+        const float16 root = select(zero, roots[slot], valid);
+        stack[0] = cut[slot];
+        stack_values[0] = w->values[MOST_SPLITS + slot];
+        for (uint top = 1u; top > 0u;) {
+            const uint node = stack[--top];
+            const float16 value = stack_values[top];
+            const uint children = nodes[node].count > 1u ? 2u : 0u;
+            if (children && splits < MOST_SPLITS &&
+                wants_children(nodes + node, points, value, w->sum * (REFINED_SHARE / samples))) {
+                ++splits;
+                weigh(w, nodes + node, lights, points, root, -1.0f);
+                const uint right = node + 2u * nodes[node + 1u].count;
+                for (uint child = 0u; child < 2u; ++child) {  // the left one ends on top
+                    const uint at = child == 0u ? right : node + 1u;
+                    stack[top] = at;
+                    stack_values[top++] = weigh(w, nodes + at, lights, points, root, 1.0f);
+                }
+                continue;
+            }
+            w->values[w->size] = value;
+            w->entries[w->size++] = node_entry(nodes, node, slot);
+        }
+    }
+}
+
+// What one draw is expected to be like: the variance of an estimate whose weights are what they
+// are, less what the control variate takes over, and a little for what V^ does not know.
+static void expect(const Weights* w, float16* variance, float16* brightness) {
+    *brightness = color_luminance_16(w->control);
+    const float remaining = CONTROL * (2.0f - CONTROL);
+    const float16 square = *brightness * *brightness;
+    *variance = max(w->sum * (w->sum - remaining * w->visible_sum) +
+                        (0.02f - (1.0f - CONTROL) * (1.0f - CONTROL)) * square,
+                    0.0f);
+}
+
+// Draws by the expected deviation of the pixel relative to its brightness, as relMSE weighs it.
+static float16 find_samples(const Weights* w, Budget budget) {
+    if (budget.factor == 0.0f) return (float16)(budget.samples);
+    float16 variance, brightness;
+    expect(w, &variance, &brightness);
+    const float square = budget.exposure * budget.exposure;
+    const float16 deviation =
+        sqrt(variance * square / fma(brightness * brightness, (float16)(square), (float16)(0.01f)));
+    return clamp(deviation * budget.factor, FEWEST_DRAWS * budget.samples,
+                 MOST_DRAWS * budget.samples);
+}
+
+// scale[lane], by which weights become expected numbers of draws, at most 1 where a node is one
+// point, that add up to `samples`, or to the number of nodes if all are certain.
+static float16 find_scale(const Weights* w, float16 samples) {
+    // Just below, so that rounding never makes one draw too many.
+    const float16 all = samples * 0.999999f;
+    float16 scale = all / max(w->sum, 1e-30f);
+    for (uint round = 0u; round < 8u; ++round) {
+        float16 rest = (float16)(0.0f);
+        float16 certain = (float16)(0.0f);
+        for (uint i = 0u; i < w->size; ++i) {
+            const float16 value = w->values[i];
+            if (w->entries[i] & SINGLE_POINT) {
+                const int16 is_certain = value * scale >= 1.0f;
+                certain += select((float16)(0.0f), (float16)(1.0f), is_certain);
+                rest += select(value, (float16)(0.0f), is_certain);
+            } else {
+                rest += value;
+            }
+        }
+        // Where next to nothing is left for the rest, what is certain by the last scale stays so.
+        const int16 possible = (rest > 0.0f) & (all - certain > 0.01f);
+        const float16 next = select(scale, max((all - certain) / rest, scale), possible);
+        if (!lanes_16(next > scale * 1.000001f)) break;
+        scale = next;
+    }
+    return scale;
+}
+
+// Where in [0, 1) the systematic draw of a pixel starts: Jimenez' interleaved gradient noise
+// ("Next Generation Post Processing in Call of Duty: Advanced Warfare", 2014), shifted at random
+// for every pass: what a pass draws is independent of earlier ones, on which its weights depend.
+static float draw_start(uint2 pixel, float shift) {
+    float whole;
+    const float inner = fract(0.06711056f * (float)pixel.x + 0.00583715f * (float)pixel.y, &whole);
+    return min(fract(52.9829189f * inner + shift, &whole), 0x1.fffffep-1f);
+}
+
+// drawn[first_draw(p) + i] and shares[...]: the nodes drawn for pixel p of the pass and how often
+// each is expected to be drawn; base[p]: what the control variate adds, cd/m2; expectations[] by
+// pixels of the batch's pass. 16 pixels, the same place of a quadrant's cells, per work-item.
+KERNEL void adaptive_draw(Tiles tiles, Camera camera, Pass pass, Budget budget,
+                          __global const Surface* surfaces, __global const Material* materials,
+                          __global const Light* lights, __global const LightNode* nodes,
+                          __global const uint* cut_nodes, __global const uint* cut_sizes,
+                          __global const float16* roots, uint pixel_sample, uint seed,
+                          __global uint* drawn, __global float* shares, __global float4* base,
+                          __global Expectation* expectations) {
+    const uint local_quadrant = get_global_id(0) / pass.count;
+    const uint place = get_global_id(0) % pass.count;
+    if (local_quadrant >= 4u * pass.tile_count) return;
+    const uint tile = pass.first_tile + local_quadrant / 4u;
+    const uint quadrant = 4u * pass.first_tile + local_quadrant;
+    Points_16 points;
+    int16 valid = (int16)(0);
+    float16 position = (float16)(0.0f);
+    const float shift = unit_float(
+        random_bits(16u * pass.number + pass.first, pixel_sample, RANDOM_DRAW_SHIFT, seed).x);
+    for (uint cell = 0u; cell < 16u; ++cell) {
+        const uint item = pass_item(pass, (16u * local_quadrant + cell) * pass.count + place);
+        const bool hit = item_in_image(tiles, item) && !surface_missed(surfaces + item);
+        INT_LANE(valid, cell) = hit ? -1 : 0;
+        Receiver receiver;
+        if (hit) {
+            receiver = make_receiver(surfaces + item, materials, camera);
+            SET_LANE(position, cell, draw_start(item_pixel(tiles, item), shift));
+        } else {
+            receiver.position = receiver.normal = receiver.to_camera = (float3)(1.0f);
+            receiver.material = materials[0];
+        }
+        set_point(&points, cell, point_of(&receiver));
+    }
+    uint counts[16];
+    for (uint cell = 0u; cell < 16u; ++cell) counts[cell] = 0u;
+    Weights w;
+    w.size = 0u;
+    w.sum = w.visible_sum = (float16)(0.0f);
+    w.control.red = w.control.green = w.control.blue = (float16)(0.0f);
+    const uint capacity = 16u * pass.packets;
+    if (lanes_16(valid)) {
+        weigh_nodes(&w, nodes, lights, cut_nodes + tile * CUT_CAPACITY, cut_sizes[tile],
+                    roots + quadrant_slots(quadrant) / 16u, &points, valid, budget.samples);
+        const float16 scale = find_scale(&w, find_samples(&w, budget));
+        for (uint i = 0u; i < w.size; ++i) {
+            const uint entry = w.entries[i];
+            float16 share = w.values[i] * scale;
+            if (entry & SINGLE_POINT) share = min(share, 1.0f);
+            const float16 reached = position + share;
+            const float16 times = floor(reached);
+            position = reached - times;
+            for (uint cells = lanes_16(times > 0.0f); cells; cells &= cells - 1u) {
+                const uint cell = lowest(cells);
+                const uint first =
+                    first_draw(pass, (16u * local_quadrant + cell) * pass.count + place);
+                for (float j = LANE(times, cell); j > 0.0f && counts[cell] < capacity; j -= 1.0f) {
+                    const uint at = first + counts[cell]++;
+                    drawn[at] = entry;
+                    shares[at] = LANE(share, cell);
+                }
+            }
+        }
+    }
+    float16 variance, brightness;
+    expect(&w, &variance, &brightness);
+    for (uint cell = 0u; cell < 16u; ++cell) {
+        const uint p = (16u * local_quadrant + cell) * pass.count + place;
+        if (counts[cell] < capacity) drawn[first_draw(pass, p) + counts[cell]] = NO_DRAW;
+        base[p] = CONTROL * (float4)(LANE(w.control.red, cell), LANE(w.control.green, cell),
+                                     LANE(w.control.blue, cell), 0.0f);
+        const Expectation e = {LANE(variance, cell), LANE(brightness, cell)};
+        expectations[(16u * quadrant + cell) * pass.count + place] = e;
+    }
+}
+
+// A light of a node, drawn child by child by their estimates. Weight 0: none can contribute.
+typedef struct Descent {
+    uint light;
+    float probability;
+} Descent;
+
+static Descent descend(__global const LightNode* nodes, __global const Light* lights,
+                       const Points_1* point, uint node, float u, uint bits) {
+    Descent d = {0u, 1.0f};
+    for (uint step = 0u; nodes[node].count > 1u; ++step) {
+        const uint right = node + 2u * nodes[node + 1u].count;
+        const float a = color_luminance_1(node_estimate_1(nodes + node + 1u, lights, point));
+        const float b = color_luminance_1(node_estimate_1(nodes + right, lights, point));
+        if (!(a + b > 0.0f)) {
+            d.probability = 0.0f;
+            return d;
+        }
+        if (step > 0u) u = unit_float(step_bits(bits, step));
+        const float p = a / (a + b);
+        const bool go_left = u < p;
+        d.probability *= go_left ? p : b / (a + b);
+        node = go_left ? node + 1u : right;
+    }
+    d.light = nodes[node].first;
+    return d;
+}
+
+// Draws a light for each drawn node, and its ray: draw i of pixel p is lane i % 16 of packet
+// pass.packets * p + i / 16; values as in lib/samples.h. Takes from the base what the drawn nodes'
+// control variates are. One pixel of the pass per work-item.
+KERNEL void adaptive_aim(Tiles tiles, Camera camera, Pass pass, __global const Surface* surfaces,
+                         __global const Material* materials, __global const Light* lights,
+                         __global const LightNode* nodes, __global const float* roots,
+                         uint pixel_sample, uint seed, __global const uint* drawn,
+                         __global const float* shares, __global float4* base,
+                         __global float4* origins, __global float* rays, __global float* values) {
+    const uint p = get_global_id(0);
+    if (p >= pass_pixels(pass)) return;
+    const uint capacity = 16u * pass.packets;
+    __global const uint* own_draws = drawn + first_draw(pass, p);
+    __global const float* own_shares = shares + first_draw(pass, p);
+    const uint first_packet = pass.packets * p;
+    uint i = 0u;
+    if (own_draws[0] != NO_DRAW) {
+        const uint item = pass_item(pass, p);
+        const Receiver receiver = make_receiver(surfaces + item, materials, camera);
+        const Points_1 point = point_of(&receiver);
+        const uint2 pixel = item_pixel(tiles, item);
+        const uint cell = item / 16u;
+        __global const float* own_roots = roots + quadrant_slots(cell / 16u) + cell % 16u;
+        float4 control = base[p];
+        uint first = 0u;  // of the draws of the same node
+        uint same = 0u;   // their number
+        for (; i < capacity && own_draws[i] != NO_DRAW; ++i) {
+            const uint entry = own_draws[i];
+            const float share = own_shares[i];
+            if (i == first + same) {
+                first = i;
+                for (same = 1u; first + same < capacity; ++same)
+                    if (own_draws[first + same] != entry) break;
+            }
+            const float root = own_roots[16u * DRAWN_SLOT(entry)];
+            const Color_1 c = node_estimate_1(nodes + DRAWN_NODE(entry), lights, &point);
+            control.xyz -= (CONTROL * root * root / share) * (float3)(c.red, c.green, c.blue);
+            const uint packet = first_packet + i / 16u;
+            const uint lane = i % 16u;
+            RAY_END(rays, packet, lane) = 0.0f;
+            const uint4 bits = random_bits(pixel.y * tiles.width + pixel.x, pixel_sample,
+                                           RANDOM_DRAWS * pass.number + i, seed);
+            const float u = ((float)(i - first) + unit_float(bits.x)) / (float)same;
+            const Descent d = descend(nodes, lights, &point, DRAWN_NODE(entry), u, bits.w);
+            if (d.probability == 0.0f) continue;
+            Ray shadow;
+            const float2 on_light = (float2)(unit_float(bits.y), unit_float(bits.z));
+            const float3 value = unshadowed(&receiver, lights + d.light, on_light, &shadow) /
+                                 (share * d.probability);
+            if (!any(value != 0.0f)) continue;
+            put_ray(rays, packet, lane, shadow);
+            __global float* lanes = values + 48 * (ulong)packet + lane;
+            lanes[0] = value.x;
+            lanes[16] = value.y;
+            lanes[32] = value.z;
+        }
+        for (uint k = 0u; k < pass.packets; ++k)
+            origins[first_packet + k] = (float4)(shadow_origin(&receiver), 0.0f);
+        base[p] = control;
+    }
+    for (; i < capacity; ++i) RAY_END(rays, first_packet + i / 16u, i % 16u) = 0.0f;
+}
+
+// estimates[item], cd/m2, and in w the number of rays, of the pass's pixels: base plus what is
+// visible. `weight` of this draw is added to what is there, unless `start` says that it is the
+// first.
+KERNEL void adaptive_add(Pass pass, __global const uint* drawn, __global const float4* base,
+                         __global const float* rays, __global const float* values, float weight,
+                         uint start, __global float4* estimates) {
+    const uint p = get_global_id(0);
+    if (p >= pass_pixels(pass)) return;
+    const uint item = pass_item(pass, p);
+    float4 sum = base[p];
+    float count = 0.0f;
+    for (uint i = 0u; i < 16u * pass.packets; ++i) {
+        if (drawn[first_draw(pass, p) + i] == NO_DRAW) break;
+        const uint packet = pass.packets * p + i / 16u;
+        const float end = RAY_END(rays, packet, i % 16u);
+        if (end == 0.0f) continue;
+        count += 1.0f;
+        __global const float* lanes = values + 48 * (ulong)packet + i % 16u;
+        if (end > 0.0f) sum.xyz += (float3)(lanes[0], lanes[16], lanes[32]);
+    }
+    const float4 term = (float4)(weight * sum.xyz, count);
+    estimates[item] = start ? term : estimates[item] + term;
+}

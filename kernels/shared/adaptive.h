@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: MIT
+#ifndef MANYLIGHT_SHARED_ADAPTIVE_H
+#define MANYLIGHT_SHARED_ADAPTIVE_H
+
+#include "shared/types.h"
+
+SHARED_BEGIN
+
+/// Sampler adaptive works on tiles of 32 x 32 pixels. A tile has 4 quadrants of 16 x 16, a quadrant
+/// 16 cells of 4 x 4, each in Morton order, so that item 1024 tile + 256 quadrant + 16 cell + place
+/// is a pixel (shared/tiles.h). Kernels handle the same place of a quadrant's 16 cells in the 16
+/// lanes of a vector.
+#define ADAPTIVE_TILE 32
+#define CELLS_PER_TILE 64
+
+/// The nodes of a tile's cut are its slots 0 to CUT_CAPACITY - 1 at most; arrays over slots and
+/// cells are [((4 tile + quadrant) * CUT_CAPACITY + slot) * 16 + cell].
+#define CUT_CAPACITY 256
+
+/// What shadow rays said about a slot of a tile: how many were traced, and how many passed.
+/// Children inherit part of their parent's, so these are no integers.
+typedef struct Trials {
+    float traced;
+    float passed;
+} Trials;
+SHARED_SIZE(Trials, 8)
+
+/// What a launch of a pass works on: in a run of tiles of the batch, the places order[first] to
+/// order[first + count - 1] of every cell. Pixel p of the pass is place first + p % count of cell
+/// CELLS_PER_TILE * first_tile + p / count of the batch; its draws are `packets` packets of 16.
+typedef struct Pass {
+    uint first;
+    uint count;
+    uint number;  // of all passes over a pixel sample, for random numbers
+    uint first_tile;
+    uint tile_count;
+    uint packets;
+} Pass;
+SHARED_SIZE(Pass, 24)
+
+/// How many draws the pixels of a pass get.
+typedef struct Budget {
+    float samples;   // on average
+    float factor;    // draws = deviation x this, within limits; 0: all pixels alike
+    float exposure;  // times luminance: about 0.5 on average
+} Budget;
+SHARED_SIZE(Budget, 12)
+
+/// A pixel's draws are between these, times the average.
+#define FEWEST_DRAWS 0.5f
+#define MOST_DRAWS 8.0f
+
+/// What a pixel's draws are expected to be like.
+typedef struct Expectation {
+    float variance;   // of the luminance, for one draw, (cd/m2)^2
+    float luminance;  // cd/m2
+} Expectation;
+SHARED_SIZE(Expectation, 8)
+
+SHARED_END
+
+#endif

@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: MIT
+// Stage visibility: what shadow rays have said about the nodes of a tile's cut, cell by cell, and
+// the estimate V^ of the share of a node's light that a cell sees.
+#include "lib/cells.h"
+#include "lib/rays.h"
+
+// Rays traced and passed share a word: counts[...] = traced + 65536 passed. A count ends here, long
+// before it overflows.
+#define MOST_TRIALS 60000u
+
+// Adds the rays of a pass to the counts of its cells. One cell per work-item.
+KERNEL void visibility_learn(Pass pass, __global const uint* drawn, __global const float* rays,
+                             __global uint* counts) {
+    if (get_global_id(0) >= pass.tile_count * CELLS_PER_TILE) return;
+    const uint cell = CELLS_PER_TILE * pass.first_tile + (uint)get_global_id(0);
+    __global uint* own = counts + quadrant_slots(cell / 16u) + cell % 16u;
+    for (uint i = 0u; i < pass.count; ++i) {
+        const uint first = first_draw(pass, (uint)get_global_id(0) * pass.count + i);
+        for (uint j = 0u; j < 16u * pass.packets; ++j) {
+            const uint entry = drawn[first + j];
+            if (entry == NO_DRAW) break;
+            const float end = RAY_END(rays, (first + j) / 16u, j % 16u);
+            if (end == 0.0f) continue;
+            const uint slot = DRAWN_SLOT(entry);
+            const uint old = own[16u * slot];
+            if ((old & 0xffffu) < MOST_TRIALS) own[16u * slot] = old + (end > 0.0f ? 65537u : 1u);
+        }
+    }
+}
+
+// Rays of 16 cells.
+typedef struct CellTrials {
+    float16 traced, passed;
+} CellTrials;
+
+static CellTrials load_trials(uint16 counts) {
+    CellTrials t;
+    t.traced = convert_float16(counts & 0xffffu);
+    t.passed = convert_float16(counts >> 16);
+    return t;
+}
+
+// Sums over groups of 4 lanes, and over all, in every lane of the group.
+static float16 sum_quarters(float16 v) {
+    const float16 pairs = v + v.s1032547698badcfe;
+    return pairs + pairs.s23016745ab89efcd;
+}
+
+static float16 sum_all(float16 quarters) {
+    const float16 halves = quarters + quarters.s45670123cdef89ab;
+    return halves + halves.s89abcdef01234567;
+}
+
+// A slot's trials in a whole tile: those of the cut (stage cuts) and of the cells. One slot per
+// work-item.
+KERNEL void visibility_sum(Tiles tiles, __global const uint* cut_sizes,
+                           __global const Trials* probes, __global const uint16* counts,
+                           __global Trials* totals) {
+    const uint tile = get_global_id(0) / CUT_CAPACITY;
+    const uint slot = get_global_id(0) % CUT_CAPACITY;
+    if (tile >= tiles.count || slot >= cut_sizes[tile]) return;
+    CellTrials sum = {(float16)(0.0f), (float16)(0.0f)};
+    for (uint quadrant = 4u * tile; quadrant < 4u * tile + 4u; ++quadrant) {
+        const CellTrials t = load_trials(counts[quadrant_slots(quadrant) / 16u + slot]);
+        sum.traced += t.traced;
+        sum.passed += t.passed;
+    }
+    Trials total = probes[tile * CUT_CAPACITY + slot];
+    total.traced += sum_all(sum_quarters(sum.traced)).s0;
+    total.passed += sum_all(sum_quarters(sum.passed)).s0;
+    totals[tile * CUT_CAPACITY + slot] = total;
+}
+
+// Slots that are neighbours in the tree's order share what is known of them.
+#define GROUP 8u
+// What is taken for granted before any ray: a share of rays that pass, worth one ray.
+#define PRIOR_SHARE 0.7f
+// What a level of the tile's quadtree is worth to the next smaller one, rays.
+#define PARENT_RAYS 4.0f
+// V^ at least: what seems hidden is still drawn now and then.
+#define LEAST_VISIBILITY 0.0005f
+
+static float shrink(Trials trials, float towards, float rays) {
+    return (trials.passed + rays * towards) / (trials.traced + rays);
+}
+
+static void add_trials(Trials* sum, Trials term) {
+    sum->traced += term.traced;
+    sum->passed += term.passed;
+}
+
+static float16 shrink_16(float16 traced, float16 passed, float16 towards) {
+    return (passed + PARENT_RAYS * towards) / (traced + PARENT_RAYS);
+}
+
+// roots[...] = sqrt(V^) of every cell, shrunk from the tile's mean to the mean of GROUP slots, the
+// slot, 16 x 16, 8 x 8 and 4 x 4 pixels. GROUP slots of a tile per work-item.
+KERNEL void visibility_estimate(Tiles tiles, __global const uint* cut_sizes,
+                                __global const Trials* totals, __global const uint16* counts,
+                                __global float16* roots) {
+    const uint tile = get_global_id(0) / (CUT_CAPACITY / GROUP);
+    const uint first = get_global_id(0) % (CUT_CAPACITY / GROUP) * GROUP;
+    if (tile >= tiles.count || first >= cut_sizes[tile]) return;
+    const uint size = cut_sizes[tile];
+    __global const Trials* own = totals + tile * CUT_CAPACITY;
+    Trials all = {0.0f, 0.0f};
+    for (uint slot = 0u; slot < size; ++slot) add_trials(&all, own[slot]);
+    Trials group = {0.0f, 0.0f};
+    const uint end = min(first + GROUP, size);
+    for (uint slot = first; slot < end; ++slot) add_trials(&group, own[slot]);
+    const float group_share = shrink(group, shrink(all, PRIOR_SHARE, 1.0f), 1.0f);
+    for (uint slot = first; slot < end; ++slot) {
+        const float16 slot_share = (float16)(shrink(own[slot], group_share, 1.0f));
+        for (uint quadrant = 4u * tile; quadrant < 4u * tile + 4u; ++quadrant) {
+            const ulong place = quadrant_slots(quadrant) / 16u + slot;
+            const CellTrials cell = load_trials(counts[place]);
+            const float16 quarter_traced = sum_quarters(cell.traced);
+            const float16 quarter_passed = sum_quarters(cell.passed);
+            const float16 whole =
+                shrink_16(sum_all(quarter_traced), sum_all(quarter_passed), slot_share);
+            const float16 quarter = shrink_16(quarter_traced, quarter_passed, whole);
+            const float16 share = shrink_16(cell.traced, cell.passed, quarter);
+            roots[place] = sqrt(max(share, LEAST_VISIBILITY));
+        }
+    }
+}
