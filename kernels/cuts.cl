@@ -6,6 +6,11 @@
 #include "lib/tiles.h"
 #include "shared/adaptive.h"
 
+#define LANES 1
+#include "lib/node_estimate.h"
+#undef LANES
+#include "lib/points.h"
+
 // Surfaces of a tile that stand for it.
 #define REPRESENTATIVES 9u
 // Distances count as this times a node's radius at least: a bound at no distance says nothing.
@@ -139,8 +144,10 @@ KERNEL void cuts_make(Tiles tiles, Camera camera, __global const Surface* surfac
             trials.passed += INHERITED * parent.passed;
             float score = 0.0f;
             if (nodes[at].count > 1u) {
-                for (uint i = 0u; i < receiver_count; ++i)
-                    score += node_importance(nodes + at, receivers + i, NEAREST);
+                for (uint i = 0u; i < receiver_count; ++i) {
+                    const Points_1 point = point_of(receivers + i);
+                    score += color_luminance_1(node_estimate_1(nodes + at, lights, &point));
+                }
                 score *= visible_root(trials);
             }
             cut.nodes[place] = at;

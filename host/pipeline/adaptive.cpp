@@ -7,11 +7,20 @@
 namespace manylight {
 namespace {
 
-constexpr uint small_cut = 128;
-constexpr uint many_lights = 20'000;
-constexpr uint many_samples = 8;
 constexpr unsigned wide_image = 640;  // pixels: tiles are small, one probe per node will do
 constexpr uint most_samples = 16;     // on average, of one draw of all nodes
+constexpr std::size_t many_packets = std::size_t{1} << 16;  // of one launch: what caches hold
+
+// Pixels with many samples are drawn several times.
+uint rounds_for(uint light_samples) { return (light_samples + most_samples - 1) / most_samples; }
+
+float samples_of_round(uint light_samples) {
+    return static_cast<float>(light_samples) / static_cast<float>(rounds_for(light_samples));
+}
+
+std::size_t packets_per_pixel(uint light_samples) {
+    return static_cast<std::size_t>(std::ceil(samples_of_round(light_samples) * MOST_DRAWS / 16));
+}
 
 }  // namespace
 
@@ -19,7 +28,7 @@ Adaptive::Adaptive(Device& device, const DeviceScene& scene, unsigned most_tiles
                    uint light_samples)
     : cut_stage_(device, scene),
       visibility_stage_(device, scene),
-      adaptive_stage_(device, scene, most_packets,
+      adaptive_stage_(device, scene, packets_for(most_tiles, light_samples),
                       std::size_t{most_tiles} * CELLS_PER_TILE * most_places),
       cuts_(device, most_tiles),
       visibility_(device, most_tiles),
@@ -28,10 +37,7 @@ Adaptive::Adaptive(Device& device, const DeviceScene& scene, unsigned most_tiles
       light_samples_(light_samples) {}
 
 void Adaptive::start(const Tiles& tiles, const Buffer<Surface>& surfaces, uint seed) {
-    const bool large = light_count_ <= CUT_CAPACITY || light_count_ > many_lights ||
-                       light_samples_ >= many_samples;
-    const CutOptions options{large ? CUT_CAPACITY : small_cut, width_ >= wide_image ? 1u : 4u,
-                             seed};
+    const CutOptions options{CUT_CAPACITY, width_ >= wide_image ? 1u : 4u, seed};
     cut_stage_.make(tiles, surfaces, options, cuts_);
     visibility_.counts.clear();
     visibility_stage_.estimate(tiles, cuts_, visibility_);
@@ -48,8 +54,8 @@ void Adaptive::draw(const Tiles& tiles, const PixelSample& sample, const Buffer<
                                             {8, 8, 0, 0, 0, 0},
                                             {0, 1, 1, 0, 0, 0}};
     const std::vector<Pass> passes = {{0, 8, 0, 0, 0, 0}, {8, 8, 0, 0, 0, 0}};
-    const uint rounds = (light_samples_ + most_samples - 1) / most_samples;
-    const float samples = static_cast<float>(light_samples_) / static_cast<float>(rounds);
+    const uint rounds = rounds_for(light_samples_);
+    const float samples = samples_of_round(light_samples_);
     for (uint round = 0; round < rounds; ++round) {
         for (Pass pass : fresh_ ? first_passes : passes) {
             pass.number += 2 * round;
@@ -63,10 +69,10 @@ void Adaptive::draw(const Tiles& tiles, const PixelSample& sample, const Buffer<
 void Adaptive::pass_over(const Tiles& tiles, Pass pass, const PixelSample& sample, float samples,
                          const Buffer<Surface>& surfaces, float weight, bool start,
                          Estimates& estimates, const std::function<void(std::size_t)>& progress) {
-    pass.packets = static_cast<uint>(std::ceil(samples * MOST_DRAWS / 16));
+    pass.packets = static_cast<uint>(packets_per_pixel(light_samples_));
     const std::size_t tile_packets = std::size_t{CELLS_PER_TILE} * pass.count * pass.packets;
     const uint tiles_at_once =
-        static_cast<uint>(std::max<std::size_t>(most_packets / tile_packets, 1));
+        static_cast<uint>(std::max<std::size_t>(many_packets / tile_packets, 1));
     const Budget budget{samples, factor_ * samples, exposure_};
     for (; pass.first_tile < tiles.count; pass.first_tile += tiles_at_once) {
         pass.tile_count = std::min(tiles_at_once, tiles.count - pass.first_tile);
@@ -78,6 +84,13 @@ void Adaptive::pass_over(const Tiles& tiles, Pass pass, const PixelSample& sampl
     visibility_stage_.estimate(tiles, cuts_, visibility_);
     set_budget(
         adaptive_stage_.expectations(std::size_t{tiles.count} * CELLS_PER_TILE * pass.count));
+}
+
+// Packets of a launch at most: one tile's pass at least.
+std::size_t Adaptive::packets_for(std::size_t tiles, uint light_samples) {
+    const std::size_t tile =
+        std::size_t{CELLS_PER_TILE} * most_places * packets_per_pixel(light_samples);
+    return std::max(std::min(many_packets, tiles * tile), tile);
 }
 
 // Finds the factor for which these pixels would get one draw each on average.

@@ -28,18 +28,18 @@ class Adaptive {
         return Cuts::tile_bytes() + Visibility::tile_bytes() +
                CELLS_PER_TILE * most_places * sizeof(Expectation);
     }
-    [[nodiscard]] static constexpr std::size_t fixed_bytes() {
-        return most_packets * AdaptiveStage::packet_bytes();
+    [[nodiscard]] static std::size_t fixed_bytes(std::size_t tiles, uint light_samples) {
+        return packets_for(tiles, light_samples) * AdaptiveStage::packet_bytes();
     }
 
   private:
     void pass_over(const Tiles& tiles, Pass pass, const PixelSample& sample, float samples,
                    const Buffer<Surface>& surfaces, float weight, bool start, Estimates& estimates,
                    const std::function<void(std::size_t)>& progress);
+    static std::size_t packets_for(std::size_t tiles, uint light_samples);
     void set_budget(const std::vector<Expectation>& pixels);
 
-    static constexpr uint most_places = 8;                             // of a cell in one pass
-    static constexpr std::size_t most_packets = std::size_t{1} << 16;  // of one launch
+    static constexpr uint most_places = 8;  // of a cell in one pass
 
     CutStage cut_stage_;
     VisibilityStage visibility_stage_;

@@ -78,7 +78,8 @@ Plan make_plan(const DeviceInfo& device, const Scene& scene, const WideBvh& bvh,
         tile_items * (sizeof(Surface) * (two_surfaces ? 2 : 1) + 2 * sizeof(float4));
     tile_bytes += cuts ? Adaptive::tile_bytes() : tile_items * SampleStage::item_bytes();
     std::size_t tile_matrix = 0;
-    std::size_t ray_bytes = cuts ? Adaptive::fixed_bytes() : 0;
+    std::size_t ray_bytes =
+        cuts ? Adaptive::fixed_bytes(tiles.count, std::max(options.light_samples, 1u)) : 0;
     if (plan.clusters) {
         tile_bytes += Clustering::tile_bytes(options.clusters, lights);
         ray_bytes = ContributionStage::ray_bytes(lights);

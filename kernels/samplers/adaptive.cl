@@ -10,6 +10,7 @@
 #define LANES 1
 #include "lib/node_estimate.h"
 #undef LANES
+#include "lib/points.h"
 #define LANES 16
 #include "lib/node_estimate.h"
 
@@ -26,28 +27,6 @@ static uint node_entry(__global const LightNode* nodes, uint node, uint slot) {
     const uint kind = nodes[node].kind;
     const bool point = kind != NODE_GROUP && kind != LIGHT_TRIANGLE && kind != LIGHT_QUAD;
     return (slot << 24) | node | (point ? SINGLE_POINT : 0u);
-}
-
-static Points_1 point_of(const Receiver* r) {
-    Points_1 p;
-    p.px = r->position.x;
-    p.py = r->position.y;
-    p.pz = r->position.z;
-    p.nx = r->normal.x;
-    p.ny = r->normal.y;
-    p.nz = r->normal.z;
-    p.red = r->material.base_color.x;
-    p.green = r->material.base_color.y;
-    p.blue = r->material.base_color.z;
-#if HAS_GGX
-    p.vx = r->to_camera.x;
-    p.vy = r->to_camera.y;
-    p.vz = r->to_camera.z;
-    p.metallic = r->material.base_color.w;
-    p.alpha = r->material.roughness;
-    p.specular = r->material.specular;
-#endif
-    return p;
 }
 
 #define SET_POINT(field) ((float*)&all->field)[lane] = one.field
