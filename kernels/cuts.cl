@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
 // Stage cuts: for each tile a cut through the light trees, fine where much light may come from, and
 // a first look at what is visible.
-#include "lib/light_tree.h"
+#include "lib/direct.h"
 #include "lib/random.h"
 #include "lib/tiles.h"
 #include "shared/adaptive.h"
+#include "shared/light_tree.h"
 
 #define LANES 1
 #include "lib/node_estimate.h"
@@ -13,8 +14,6 @@
 
 // Surfaces of a tile that stand for it.
 #define REPRESENTATIVES 9u
-// Distances count as this times a node's radius at least: a bound at no distance says nothing.
-#define NEAREST 0.1f
 // The dimension of the random numbers of a tile's probes.
 #define RANDOM_PROBES 0xfffffffeu
 // What a node's children take over of its trials.

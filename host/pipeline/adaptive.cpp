@@ -38,8 +38,8 @@ Adaptive::Adaptive(Device& device, const DeviceScene& scene, unsigned most_tiles
 
 void Adaptive::start(const Tiles& tiles, const Buffer<Surface>& surfaces, uint seed) {
     const CutOptions options{CUT_CAPACITY, width_ >= wide_image ? 1u : 4u, seed};
-    cut_stage_.make(tiles, surfaces, options, cuts_);
     visibility_.counts.clear();
+    cut_stage_.make(tiles, surfaces, options, cuts_);
     visibility_stage_.estimate(tiles, cuts_, visibility_);
     fresh_ = true;
     factor_ = 0;

@@ -80,7 +80,8 @@ void Frame::prepare() {
         device_, upload_scene(device_, scene_, bvh_, camera_, tree ? &tree_ : nullptr));
     Stages& s = *stages_;
     if (sampler_.table == Table::cuts)
-        s.adaptive.emplace(device_, s.scene, plan_.tiles_per_batch, options_.width, light_samples_);
+        s.adaptive.emplace(device_, s.scene, plan_.tiles_per_batch, options_.width,
+                           std::max(light_samples_, 1u));
     else
         s.samples.emplace(device_, s.scene, sampler_.kernel_file, items);
     s.surfaces = device_.allocate<Surface>(items);

@@ -36,6 +36,11 @@ class AdaptiveStage {
         return expectations_.download(0, pixels);
     }
 
+    // Of the last draw(); see kernels/samplers/adaptive.cl.
+    [[nodiscard]] const Buffer<uint>& drawn() const { return drawn_; }
+    [[nodiscard]] const Buffer<float>& shares() const { return shares_; }
+    [[nodiscard]] const Buffer<float>& rays() const { return shadows_.rays(); }
+
     [[nodiscard]] static constexpr std::size_t packet_bytes() {
         return ShadowStage::packet_bytes() + (48 + 2 * 16 + 4) * sizeof(float);
     }

@@ -15,6 +15,9 @@ class ShadowStage {
     /// The buffers, as kernels' arguments origins and rays.
     [[nodiscard]] Arguments buffers() const;
 
+    /// The rays themselves.
+    [[nodiscard]] const Buffer<float>& rays() const { return rays_; }
+
     /// Ends the rays of packets 0 to `count` that are occluded at -1.
     void trace(std::size_t count);
 

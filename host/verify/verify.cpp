@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cstring>
 
+#include "shared/adaptive.h"
+
 namespace manylight {
 
 void Check::compare(double difference, double allowed, const std::string& item, bool zero) {
@@ -73,6 +75,10 @@ std::vector<Check> Verifier::all() {
             checks.push_back(pdf(sampler));
         if (sampler.choose_light) checks.push_back(samples(sampler));
     }
+    // Half as many nodes as lights, so that some are groups.
+    const std::size_t half = (scene_.lights.size() + 1) / 2;
+    const auto cut_size = static_cast<uint>(std::clamp<std::size_t>(half, 2, CUT_CAPACITY));
+    for (Check& check : adaptive(cut_size)) checks.push_back(std::move(check));
     return checks;
 }
 

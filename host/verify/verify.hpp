@@ -57,6 +57,9 @@ class Verifier {
     [[nodiscard]] Check samples(const Sampler& sampler);
     [[nodiscard]] Check accumulate();
 
+    /// Sampler adaptive with cuts of `cut_size` nodes at most: cuts, visibility, weights, samples.
+    [[nodiscard]] std::vector<Check> adaptive(uint cut_size);
+
     /// All of them, for every sampler in the table.
     [[nodiscard]] std::vector<Check> all();
 

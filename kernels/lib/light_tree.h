@@ -28,9 +28,8 @@ static Angle less(Angle a, Angle b) {
 // An upper bound, but for the material, on what a node's lights contribute together: power x
 // cosines / squared distance, each as favourable as bounds and cone allow (Conty Estevez and Kulla,
 // "Importance Sampling of Many Lights with Adaptive Tree Splitting", 2018, as pbrt-v4 evaluates it
-// in LightBounds::Importance). Distances count as `nearest` times the radius of the bounds at
-// least.
-static float node_importance(__global const LightNode* node, const Receiver* r, float nearest) {
+// in LightBounds::Importance). Distances count as the radius of the bounds at least.
+static float node_importance(__global const LightNode* node, const Receiver* r) {
     if (node->infinite) {
         const float3 c = node->centre.xyz;
         const float cosine = dot(r->normal, c) + node->intensity.w;
@@ -41,7 +40,7 @@ static float node_importance(__global const LightNode* node, const Receiver* r, 
     const float radius2 = dot(half_diagonal, half_diagonal);
     const float3 to_centre = centre - r->position;
     const float distance2 = dot(to_centre, to_centre);
-    const float floor2 = max(distance2, nearest * nearest * radius2);
+    const float floor2 = max(distance2, radius2);
     if (floor2 == 0.0f) return 0.0f;
     const float power = node->cone.w;
     // Within the sphere around the bounds every direction is possible.

@@ -131,8 +131,11 @@ static NAMED(Color) NAMED(node_estimate)(__global const LightNode* node,
     const REAL n_in = max(NAMED(dot3)(p->nx, p->ny, p->nz, wx, wy, wz), (REAL)(0.0f));
     const REAL n_out =
         max(fabs(NAMED(dot3)(p->nx, p->ny, p->nz, p->vx, p->vy, p->vz)), (REAL)(1e-4f));
-    // 1 - (N.H)^2 cancels for small alpha, which only makes the estimate worse.
-    const REAL width = fma(a2 - 1.0f, min(n_h * n_h, (REAL)(1.0f)), 1.0f);
+    // 1 - (N.H)^2 would cancel for small alpha.
+    const REAL sx = fma(p->ny, hz, -p->nz * hy);
+    const REAL sy = fma(p->nz, hx, -p->nx * hz);
+    const REAL sz = fma(p->nx, hy, -p->ny * hx);
+    const REAL width = fma(a2 * n_h, n_h, NAMED(dot3)(sx, sy, sz, sx, sy, sz));
     const REAL smith = (n_in + sqrt(fma(1.0f - a2, n_in * n_in, a2))) *
                        (n_out + sqrt(fma(1.0f - a2, n_out * n_out, a2)));
     const REAL lobe = a2 / (M_PI_F * width * width * smith);

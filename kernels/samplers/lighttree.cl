@@ -19,8 +19,8 @@ static Choice choose_light(const Receiver* receiver, __global const Light* light
     for (uint step = root_count > 1u ? 0u : 1u; step == 0u || nodes[node].count > 1u; ++step) {
         const uint left = step == 0u ? 0u : node + 1u;
         const uint right = step == 0u ? second_root : node + 2u * nodes[node + 1u].count;
-        const float a = node_importance(nodes + left, receiver, 1.0f);
-        const float b = node_importance(nodes + right, receiver, 1.0f);
+        const float a = node_importance(nodes + left, receiver);
+        const float b = node_importance(nodes + right, receiver);
         if (!(a + b > 0.0f)) return none;
         // Where less than one sample is expected strata have no use any more: fresh digits.
         if (probability * count < 1.0f) u = unit_float(step_bits(draw.bits.w, step));

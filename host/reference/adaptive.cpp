@@ -1,0 +1,385 @@
+// SPDX-License-Identifier: MIT
+#include "reference/adaptive.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/gtc/constants.hpp>
+#include <list>
+
+#include "reference/contributions.hpp"
+#include "reference/random.hpp"
+#include "reference/tiles.hpp"
+
+namespace manylight::reference {
+namespace {
+
+constexpr double doubtful = 1e-4;  // difference in a decision that single precision may not see
+
+// max(k, 0) smoothed over sqrt(v).
+double soft(double k, double v) {
+    const double root = std::sqrt(k * k + v);
+    return k >= 0 ? (k + root) / 2 : (v == 0 ? 0 : v / (2 * (root - k)));
+}
+
+// glTF's BRDF with a lobe of squared width a2, for a direction that may be below the surface.
+glm::dvec3 widened_brdf(const Material& m, const glm::dvec3& n, const glm::dvec3& wi,
+                        const glm::dvec3& wo, double spread) {
+    const glm::dvec3 base(m.base_color);
+    if (m.base_color.w == 0 && m.specular == 0) return base / glm::pi<double>();
+    const glm::dvec3 h = glm::normalize(wi + wo);
+    const double a2 = double{m.roughness} * m.roughness + spread / 4;
+    const double n_h = glm::dot(n, h);
+    const double n_l = std::max(glm::dot(n, wi), 0.0);
+    const double n_v = std::max(std::abs(glm::dot(n, wo)), 1e-4);
+    const double d = std::min(n_h * n_h, 1.0) * (a2 - 1) + 1;
+    const auto smith = [a2](double c) { return c + std::sqrt(a2 + (1 - a2) * c * c); };
+    const double lobe = a2 / (glm::pi<double>() * d * d * smith(n_l) * smith(n_v));
+    const double schlick = std::pow(std::max(1 - std::abs(glm::dot(wo, h)), 0.0), 5);
+    const double fresnel = m.specular * (0.04 + 0.96 * schlick);
+    const glm::dvec3 dielectric = glm::mix(base / glm::pi<double>(), glm::dvec3(lobe), fresnel);
+    const glm::dvec3 metal = lobe * (base + (1.0 - base) * schlick);
+    return glm::mix(dielectric, metal, double{m.base_color.w});
+}
+
+uint right_child(const LightTree& tree, uint node) { return node + 2 * tree.nodes[node + 1].count; }
+
+bool single_point(const LightNode& node) {
+    return node.kind != NODE_GROUP && node.kind != LIGHT_TRIANGLE && node.kind != LIGHT_QUAD;
+}
+
+// Falloff and cone of a leaf, relative to what an isotropic point would give.
+double leaf_emission(const LightNode& node, const Light& light, const glm::dvec3& d,
+                     const glm::dvec3& towards) {
+    const double distance = glm::length(d);
+    double emission = 1;
+    if (light.axis.w > 0) emission = std::clamp(1 - std::pow(distance / light.axis.w, 4), 0.0, 1.0);
+    if (node.kind == LIGHT_SPOT) {
+        const double cosine = glm::dot(-towards, glm::dvec3(light.axis));
+        emission *= std::pow(std::clamp(cosine * light.edge.x + light.edge.y, 0.0, 1.0), 2);
+    }
+    return emission;
+}
+
+}  // namespace
+
+glm::dvec3 node_estimate(const LightTree& tree, uint index, const Point& point) {
+    const LightNode& node = tree.nodes[index];
+    const Surface& s = point.surface;
+    const glm::dvec3 normal(s.normal);
+    const glm::dvec3 centre(node.centre);
+    glm::dvec3 towards;
+    double spread;
+    double factor;
+    if (node.infinite) {
+        towards = glm::normalize(centre);
+        spread = node.centre.w;
+        const double k = glm::dot(normal, towards);
+        if (k + node.intensity.w <= 0) return glm::dvec3(0);
+        factor = soft(k, spread);
+    } else {
+        const glm::dvec3 d = centre - glm::dvec3(s.position);
+        const double distance = glm::length(d);
+        if (distance == 0) return glm::dvec3(0);
+        towards = d / distance;
+        const double softened = distance * distance + node.centre.w;
+        spread = node.centre.w / softened;
+        const double k = glm::dot(normal, towards);
+        if (k + node.intensity.w / distance <= 0) return glm::dvec3(0);
+        double emission;
+        const Light& light = tree.lights[node.first];
+        const glm::dvec3 axis(node.axis);
+        if (node.kind == LIGHT_POINT || node.kind == LIGHT_SPOT) {
+            emission = leaf_emission(node, light, d, towards);
+        } else if (node.kind == LIGHT_TRIANGLE || node.kind == LIGHT_QUAD) {
+            const glm::dvec3 n =
+                glm::normalize(glm::cross(glm::dvec3(light.axis), glm::dvec3(light.edge)));
+            const double height = -glm::dot(d, n);
+            emission = (light.axis.w != 0 ? std::abs(height) : std::max(height, 0.0)) /
+                       std::sqrt(softened);
+        } else {
+            const double oriented = 1 - double{node.axis.w};
+            const double delta = std::max(oriented * oriented - glm::dot(axis, axis), 0.0) / 3;
+            emission = node.axis.w;
+            if (oriented > 0)
+                emission += soft(-glm::dot(axis, towards), spread * oriented * oriented + delta);
+        }
+        factor = soft(k, spread) * emission / softened;
+    }
+    const glm::dvec3 to_camera = direction_to_camera(point.camera, glm::dvec3(s.position));
+    return glm::dvec3(node.intensity) * factor *
+           widened_brdf(point.material(), normal, towards, to_camera, spread);
+}
+
+TileCut make_cut(const LightTree& tree, const Scene& scene, const Tracer& tracer,
+                 const Camera& camera, const Tiles& tiles, uint tile,
+                 std::span<const Surface> surfaces, uint cut_size, uint probe_rays, uint seed) {
+    std::vector<const Surface*> representatives;
+    const uint x0 = (tiles.first + tile) % tiles.columns * tiles.size;
+    const uint y0 = (tiles.first + tile) / tiles.columns * tiles.size;
+    const auto consider = [&](uint x, uint y) {
+        if (x >= tiles.width || y >= tiles.height) return;
+        const Surface& s = surfaces[item_of(tiles, x, y)];
+        if (s.position.w >= 0) representatives.push_back(&s);
+    };
+    for (uint i = 0; i < 9; ++i)
+        consider(x0 + (2 * (i % 3) + 1) * tiles.size / 6, y0 + (2 * (i / 3) + 1) * tiles.size / 6);
+    TileCut out;
+    if (representatives.empty()) {  // the first along the Morton curve
+        const std::size_t area = std::size_t{tiles.size} * tiles.size;
+        std::size_t best = area;
+        for (uint y = y0; y < std::min(y0 + tiles.size, tiles.height); ++y)
+            for (uint x = x0; x < std::min(x0 + tiles.size, tiles.width); ++x)
+                if (surfaces[item_of(tiles, x, y)].position.w >= 0)
+                    best = std::min(best, item_of(tiles, x, y) % area);
+        if (best == area) return out;
+        representatives.push_back(&surfaces[tile * area + best]);
+    }
+    const uint tile_bits = random_bits(tiles.first + tile, 0, 0xfffffffeu, seed)[0];
+    const auto probe = [&](uint node) {
+        Rays rays;
+        for (uint i = 0; i < probe_rays; ++i) {
+            const uint bits = step_bits(step_bits(tile_bits, node), i);
+            double u = unit_fraction(bits);
+            uint at = node;
+            double blur = 1e-6;
+            while (tree.nodes[at].count > 1) {
+                const uint right = right_child(tree, at);
+                const double a = tree.nodes[at + 1].cone.w;
+                const double sum = a + double{tree.nodes[right].cone.w};
+                const double p = sum > 0 ? a / sum : 0.5;
+                if (std::abs(u - p) < blur) out.uncertain = true;
+                const bool left = u < p;
+                blur = (blur + 1e-6) / (left ? p : 1 - p);
+                u = left ? u / p : (u - p) / (1 - p);
+                at = left ? at + 1 : right;
+            }
+            const auto count = static_cast<uint>(representatives.size());
+            const Surface& s = *representatives[(i + bits % count) % count];
+            const Light& light = tree.lights[tree.nodes[at].first];
+            const Unshadowed term =
+                unshadowed(s, scene.materials[s.material], camera, light, centroid(light));
+            if (term.value == glm::dvec3(0)) continue;
+            rays.traced += 1;
+            rays.passed += tracer.occluded(term.shadow) ? 0 : 1;
+            if (tracer.occlusion_is_borderline(term.shadow, end_rounding(term.shadow)))
+                out.uncertain = true;
+        }
+        return rays;
+    };
+    if (tree.lights.size() <= cut_size) {
+        for (uint node = 0; node < tree.nodes.size(); ++node) {
+            if (tree.nodes[node].count > 1) continue;
+            out.nodes.push_back(node);
+            out.probes.push_back(probe(node));
+        }
+        return out;
+    }
+    struct Entry {
+        uint node;
+        double score;
+        Rays rays;
+    };
+    std::list<Entry> cut;
+    for (const uint root : tree.roots)
+        cut.push_back({root, tree.nodes[root].count > 1 ? 1e300 : 0.0, {}});
+    while (cut.size() < cut_size) {
+        auto best = cut.begin();
+        for (auto i = cut.begin(); i != cut.end(); ++i)
+            if (i->score > best->score) best = i;
+        if (best->score <= 0) break;
+        // Who is split last is a close call where scores are equal.
+        if (cut.size() + 1 == cut_size)
+            for (auto i = cut.begin(); i != cut.end(); ++i)
+                if (i != best && i->score > best->score * (1 - doubtful)) out.uncertain = true;
+        const Entry parent = *best;
+        for (const uint at : {parent.node + 1, right_child(tree, parent.node)}) {
+            Entry child{at, 0, probe(at)};
+            child.rays.traced += parent.rays.traced / 2;
+            child.rays.passed += parent.rays.passed / 2;
+            if (tree.nodes[at].count > 1) {
+                for (const Surface* s : representatives)
+                    child.score += luminance(node_estimate(tree, at, {scene, camera, *s}));
+                child.score *= std::sqrt((child.rays.passed + 0.7) / (child.rays.traced + 1));
+            }
+            cut.insert(best, child);
+        }
+        cut.erase(best);
+    }
+    for (const Entry& e : cut) {
+        out.nodes.push_back(e.node);
+        out.probes.push_back(e.rays);
+    }
+    return out;
+}
+
+std::vector<double> visibility_roots(std::span<const Trials> probes, std::span<const Rays> counts) {
+    const std::size_t size = probes.size();
+    const auto add = [](Rays& sum, const Rays& r) {
+        sum.traced += r.traced;
+        sum.passed += r.passed;
+    };
+    const auto shrunk = [](const Rays& r, double towards, double weight) {
+        return (r.passed + weight * towards) / (r.traced + weight);
+    };
+    // Sum over the cells of a slot whose number divided by `cells` is `part`.
+    const auto part_of = [&](std::size_t slot, std::size_t part, std::size_t cells) {
+        Rays sum;
+        for (std::size_t cell = part * cells; cell < (part + 1) * cells; ++cell)
+            add(sum, counts[64 * slot + cell]);
+        return sum;
+    };
+    std::vector<Rays> totals;
+    Rays all;
+    for (std::size_t slot = 0; slot < size; ++slot) {
+        Rays total = part_of(slot, 0, 64);
+        add(total, {probes[slot].traced, probes[slot].passed});
+        totals.push_back(total);
+        add(all, total);
+    }
+    std::vector<double> roots(64 * size);
+    for (std::size_t slot = 0; slot < size; ++slot) {
+        Rays group;
+        for (std::size_t i = slot / 8 * 8; i < std::min(slot / 8 * 8 + 8, size); ++i)
+            add(group, totals[i]);
+        const double of_slot = shrunk(totals[slot], shrunk(group, shrunk(all, 0.7, 1), 1), 1);
+        for (std::size_t cell = 0; cell < 64; ++cell) {
+            double share = of_slot;
+            for (const std::size_t cells : {16, 4, 1})
+                share = shrunk(part_of(slot, cell / cells, cells), share, 4);
+            roots[64 * slot + cell] = std::sqrt(std::max(share, 0.0005));
+        }
+    }
+    return roots;
+}
+
+std::vector<PixelDraws> draw_nodes(const LightTree& tree, const Scene& scene, const Camera& camera,
+                                   std::span<const uint> cut, std::span<const DrawnPixel> pixels,
+                                   const Budget& budget) {
+    struct Entry {
+        uint slot, node;
+    };
+    bool doubt = false;
+    const auto weight_of = [&](const Entry& e, const DrawnPixel& p) {
+        if (!p.surface) return 0.0;
+        return luminance(node_estimate(tree, e.node, {scene, camera, *p.surface})) *
+               p.roots[e.slot];
+    };
+    std::vector<Entry> list;
+    for (uint slot = 0; slot < cut.size(); ++slot) list.push_back({slot, cut[slot]});
+    std::vector<double> sums(pixels.size(), 0);
+    for (const Entry& e : list)
+        for (std::size_t i = 0; i < pixels.size(); ++i) sums[i] += weight_of(e, pixels[i]);
+    // What is close to any of the pixels is replaced by its children.
+    int splits = 0;
+    for (std::size_t at = 0; at < list.size();) {
+        const Entry e = list[at];
+        const LightNode& node = tree.nodes[e.node];
+        bool wanted = false;
+        for (std::size_t i = 0; i < pixels.size() && node.count > 1; ++i) {
+            if (!pixels[i].surface) continue;
+            const double distance =
+                glm::length(glm::dvec3(node.centre) - glm::dvec3(pixels[i].surface->position));
+            const double near = node.infinite
+                                    ? double{node.intensity.w}
+                                    : std::min(node.intensity.w / std::max(distance, 1e-20), 1.0);
+            const double limit = sums[i] * 0.25 / budget.samples;
+            const double size = weight_of(e, pixels[i]) * near;
+            wanted = wanted || size > limit;
+            if (size > 0 && std::abs(size / limit - 1) < doubtful / 4) doubt = true;
+        }
+        if (!wanted || splits >= 64) {
+            ++at;
+            continue;
+        }
+        ++splits;
+        const Entry children[] = {{e.slot, e.node + 1}, {e.slot, right_child(tree, e.node)}};
+        for (std::size_t i = 0; i < pixels.size(); ++i)
+            sums[i] += weight_of(children[0], pixels[i]) + weight_of(children[1], pixels[i]) -
+                       weight_of(e, pixels[i]);
+        list[at] = children[0];
+        list.insert(list.begin() + static_cast<std::ptrdiff_t>(at) + 1, children[1]);
+    }
+    std::vector<PixelDraws> out;
+    for (const DrawnPixel& pixel : pixels) {
+        PixelDraws& d = out.emplace_back();
+        d.uncertain = doubt;
+        if (!pixel.surface) continue;
+        std::vector<double> weights;
+        double sum = 0;
+        double visible = 0;
+        for (const Entry& e : list) {
+            const double v = pixel.roots[e.slot] * pixel.roots[e.slot];
+            d.control += v * node_estimate(tree, e.node, {scene, camera, *pixel.surface});
+            weights.push_back(weight_of(e, pixel));
+            sum += weights.back();
+            visible += v * weights.back();
+        }
+        const double brightness = luminance(d.control);
+        d.variance =
+            std::max(sum * (sum - 0.96 * visible) + (0.02 - 0.04) * brightness * brightness, 0.0);
+        double samples = budget.samples;
+        if (budget.factor > 0)
+            samples = std::clamp<double>(
+                budget.factor * budget.exposure *
+                    std::sqrt(d.variance / (std::pow(brightness * budget.exposure, 2) + 0.01)),
+                FEWEST_DRAWS * budget.samples, MOST_DRAWS * budget.samples);
+        const double all = samples * 0.999999;
+        double scale = sum > 0 ? all / sum : 0;
+        for (int round = 0; round < 8 && sum > 0; ++round) {
+            double rest = 0;
+            double certain = 0;
+            for (std::size_t i = 0; i < list.size(); ++i) {
+                if (single_point(tree.nodes[list[i].node]) && weights[i] * scale >= 1)
+                    certain += 1;
+                else
+                    rest += weights[i];
+            }
+            if (!(rest > 0 && all - certain > 0.01)) break;
+            scale = std::max((all - certain) / rest, scale);
+        }
+        double position = pixel.start;
+        double blur = 1e-6;  // of the position
+        for (std::size_t i = 0; i < list.size(); ++i) {
+            const double exact_share = weights[i] * scale;
+            const bool single = single_point(tree.nodes[list[i].node]);
+            const double share = single ? std::min(exact_share, 1.0) : exact_share;
+            const double reached = position + share;
+            blur += 1e-5 * share + 1e-7;
+            // Close to where a draw begins, but for nodes that are passed exactly.
+            const double whole = std::round(reached);
+            if (whole > 0 && std::abs(reached - whole) < blur) d.uncertain = true;
+            for (int k = 0; k < static_cast<int>(reached); ++k)
+                d.draws.push_back({list[i].slot, list[i].node, share});
+            position = reached - std::floor(reached);
+        }
+    }
+    return out;
+}
+
+Descent descend(const LightTree& tree, uint node, const Point& point, double u, uint bits) {
+    Descent d{0, 1};
+    for (uint step = 0; tree.nodes[node].count > 1; ++step) {
+        const uint right = right_child(tree, node);
+        const double a = luminance(node_estimate(tree, node + 1, point));
+        const double b = luminance(node_estimate(tree, right, point));
+        if (a + b == 0) return {0, 0, d.uncertain};
+        if (step > 0) u = unit_fraction(step_bits(bits, step));
+        const double p = a / (a + b);
+        if (std::abs(u - p) < 1e-5) d.uncertain = true;
+        d.probability *= u < p ? p : 1 - p;
+        node = u < p ? node + 1 : right;
+    }
+    d.light = tree.nodes[node].first;
+    return d;
+}
+
+double draw_start(uint x, uint y, const Pass& pass, uint pixel_sample, uint seed) {
+    const auto shift = static_cast<float>(unit_fraction(
+        random_bits(16 * pass.number + pass.first, pixel_sample, 0xfffffffdu, seed)[0]));
+    const auto fraction = [](float v) { return std::min(v - std::floor(v), 0x1.fffffep-1f); };
+    const float inner =
+        fraction(0.06711056f * static_cast<float>(x) + 0.00583715f * static_cast<float>(y));
+    return fraction(52.9829189f * inner + shift);
+}
+
+}  // namespace manylight::reference

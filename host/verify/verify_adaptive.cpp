@@ -1,0 +1,314 @@
+// SPDX-License-Identifier: MIT
+// The stages of sampler adaptive: cuts, visibility, weights (the draw of nodes), samples.
+#include <algorithm>
+#include <cmath>
+
+#include "reference/adaptive.hpp"
+#include "reference/random.hpp"
+#include "reference/tiles.hpp"
+#include "stages/adaptive.hpp"
+#include "verify/tolerances.hpp"
+#include "verify/verify.hpp"
+
+namespace manylight {
+namespace {
+
+constexpr uint most_tiles = 9;
+constexpr uint probe_rays = 4;
+constexpr double control = 0.8;
+constexpr double darkest = 1e-9;  // cd/m2: a light just below the horizon
+constexpr uint no_draw = ~0u;
+constexpr const char* node_tolerance = "1e-3 (some 100 operations, lobes narrower than 1e-3 rad)";
+
+const uint place_order[16] = {12, 0, 4, 8, 3, 7, 11, 15, 1, 2, 5, 6, 9, 10, 13, 14};
+
+// Two passes over some tiles, the second of which has learned from the first.
+struct Run {
+    Tiles tiles;
+    Pass first{0, 8, 0, 0, 0, 2}, second{8, 8, 0, 0, 0, 2};
+    Budget budget{4, 4, 1};
+    PixelSample sample;
+    std::vector<Surface> surfaces;
+    std::vector<uint> nodes, sizes;  // the cuts'
+    std::vector<Trials> probes;
+    std::vector<uint> first_drawn, drawn;  // of the two passes
+    std::vector<float> first_rays, shares;
+    std::vector<uint> counts;  // after the first pass
+    std::vector<float> roots;  // likewise
+    std::vector<float4> estimates;
+
+    Run(Device& device, const DeviceScene& scene, Tiles all, uint cut_size, uint seed)
+        : tiles(all), sample{3, seed, false} {
+        tiles.count = std::min(tiles.count, most_tiles);
+        first.tile_count = second.tile_count = tiles.count;
+        Buffer<Surface> points = device.allocate<Surface>(item_count(tiles));
+        GBufferStage(device, scene).trace(tiles, {}, points);
+        surfaces = points.download();
+        Cuts cuts(device, tiles.count);
+        CutStage(device, scene).make(tiles, points, {cut_size, probe_rays, seed}, cuts);
+        nodes = cuts.nodes.download();
+        sizes = cuts.sizes.download();
+        probes = cuts.probes.download();
+        Visibility visibility(device, tiles.count);
+        VisibilityStage learn(device, scene);
+        visibility.counts.clear();
+        learn.estimate(tiles, cuts, visibility);
+        AdaptiveStage stage(device, scene, pass_pixels(first) * first.packets, pass_pixels(first));
+        Estimates sums{device.allocate<float4>(item_count(tiles)), {}};
+        stage.draw(tiles, first, {budget.samples, 0, 0}, sample, points, cuts, visibility, 1, true,
+                   sums);
+        first_drawn = stage.drawn().download();
+        first_rays = stage.rays().download();
+        learn.learn(first, stage.draws(), visibility);
+        learn.estimate(tiles, cuts, visibility);
+        counts = visibility.counts.download();
+        roots = visibility.roots.download();
+        stage.draw(tiles, second, budget, sample, points, cuts, visibility, 1, true, sums);
+        drawn = stage.drawn().download();
+        shares = stage.shares().download();
+        estimates = sums.sums.download();
+    }
+
+    // Where a slot's cell is in counts and roots.
+    [[nodiscard]] static std::size_t place(std::size_t tile, std::size_t slot, std::size_t cell) {
+        return ((4 * tile + cell / 16) * CUT_CAPACITY + slot) * 16 + cell % 16;
+    }
+    // The item of a pixel of a pass.
+    [[nodiscard]] static std::size_t item(const Pass& pass, std::size_t pixel) {
+        return 16 * (pixel / pass.count) + place_order[pass.first + pixel % pass.count];
+    }
+    [[nodiscard]] bool hit(std::size_t item) const {
+        const glm::uvec2 at = item_pixel(tiles, item);
+        return at.x < tiles.width && at.y < tiles.height && surfaces[item].position.w >= 0;
+    }
+};
+
+Check check_cuts(const Run& run, const LightTree& tree, const Scene& scene,
+                 const reference::Tracer& tracer, const Camera& camera, uint cut_size) {
+    Check check{.stage = "cuts", .tolerance = "none, but for close calls"};
+    for (uint tile = 0; tile < run.tiles.count; ++tile) {
+        const reference::TileCut expected =
+            reference::make_cut(tree, scene, tracer, camera, run.tiles, tile, run.surfaces,
+                                cut_size, probe_rays, run.sample.seed);
+        // Whatever rounding does: every light is in one node, in order.
+        uint next = 0;
+        for (uint slot = 0; slot < run.sizes[tile]; ++slot) {
+            const LightNode& node = tree.nodes[run.nodes[tile * CUT_CAPACITY + slot]];
+            check.compare_exact(node.first == next, fmt::format("tile {}, slot {}", tile, slot));
+            next = node.first + node.count;
+        }
+        check.compare_exact(next == (expected.nodes.empty() ? 0 : tree.lights.size()),
+                            fmt::format("tile {}: {} lights", tile, next));
+        if (expected.uncertain) continue;
+        check.compare_exact(
+            run.sizes[tile] == expected.nodes.size(),
+            fmt::format("tile {}: {} nodes, not {}", tile, run.sizes[tile], expected.nodes.size()));
+        for (uint slot = 0; slot < std::min<std::size_t>(run.sizes[tile], expected.nodes.size());
+             ++slot) {
+            const std::size_t place = tile * CUT_CAPACITY + slot;
+            check.compare_exact(run.nodes[place] == expected.nodes[slot],
+                                fmt::format("tile {}, slot {}: node {}, not {}", tile, slot,
+                                            run.nodes[place], expected.nodes[slot]));
+            check.compare(std::abs(run.probes[place].passed - expected.probes[slot].passed) +
+                              std::abs(run.probes[place].traced - expected.probes[slot].traced),
+                          1e-4, fmt::format("tile {}, slot {}: probes", tile, slot));
+        }
+    }
+    return check;
+}
+
+Check check_visibility(const Run& run) {
+    Check check{.stage = "visibility", .tolerance = "16 eps (10 operations per level)"};
+    for (uint tile = 0; tile < run.tiles.count; ++tile) {
+        const uint size = run.sizes[tile];
+        std::vector<reference::Rays> counts(64 * std::size_t{size});
+        const std::size_t pixels = std::size_t{64} * run.first.count;
+        for (std::size_t p = tile * pixels; p < (tile + 1) * pixels; ++p)
+            for (std::size_t i = 0; i < 16 * run.first.packets; ++i) {
+                const std::size_t draw = 16 * run.first.packets * p + i;
+                if (run.first_drawn[draw] == no_draw) break;
+                const float end = run.first_rays[64 * (draw / 16) + 48 + draw % 16];
+                if (end == 0) continue;
+                reference::Rays& count =
+                    counts[64 * (run.first_drawn[draw] >> 24) + p / run.first.count % 64];
+                count.traced += 1;
+                count.passed += end > 0 ? 1 : 0;
+            }
+        const std::vector<double> roots = reference::visibility_roots(
+            std::span(run.probes).subspan(tile * CUT_CAPACITY, size), counts);
+        for (uint slot = 0; slot < size; ++slot)
+            for (uint cell = 0; cell < 64; ++cell) {
+                const reference::Rays& expected = counts[64 * slot + cell];
+                const uint found = run.counts[Run::place(tile, slot, cell)];
+                const std::string name = fmt::format("tile {}, slot {}, cell {}", tile, slot, cell);
+                check.compare_exact(
+                    (found & 0xffff) == expected.traced && found >> 16 == expected.passed,
+                    name + ": rays");
+                const double root = roots[64 * slot + cell];
+                check.compare(std::abs(run.roots[Run::place(tile, slot, cell)] - root),
+                              16 * epsilon * root, name);
+            }
+    }
+    return check;
+}
+
+// The draws of the second pass: 16 pixels at a time.
+Check check_weights(const Run& run, const LightTree& tree, const Scene& scene, const Camera& camera,
+                    std::size_t most_entries) {
+    Check check{.stage = "weights", .tolerance = node_tolerance};
+    const std::size_t groups = std::size_t{4} * run.tiles.count * run.second.count;
+    const std::size_t stride =
+        (groups * 16 * std::max<std::size_t>(run.sizes.empty() ? 1 : run.sizes[0], 16) /
+         most_entries) |
+        1;
+    for (std::size_t group = 0; group < groups; group += stride) {
+        const std::size_t quadrant = group / run.second.count;
+        const std::size_t tile = quadrant / 4;
+        std::vector<reference::DrawnPixel> pixels;
+        std::vector<std::size_t> numbers;
+        for (std::size_t cell = 0; cell < 16; ++cell) {
+            const std::size_t p =
+                (16 * quadrant + cell) * run.second.count + group % run.second.count;
+            const std::size_t item = Run::item(run.second, p);
+            const glm::uvec2 at = item_pixel(run.tiles, item);
+            reference::DrawnPixel pixel{
+                run.hit(item) ? &run.surfaces[item] : nullptr,
+                reference::draw_start(at.x, at.y, run.second, run.sample.index, run.sample.seed),
+                {}};
+            for (uint slot = 0; slot < run.sizes[tile]; ++slot)
+                pixel.roots.push_back(
+                    run.roots[Run::place(tile, slot, 16 * (quadrant % 4) + cell)]);
+            pixels.push_back(pixel);
+            numbers.push_back(p);
+        }
+        const std::vector<reference::PixelDraws> expected = reference::draw_nodes(
+            tree, scene, camera, std::span(run.nodes).subspan(tile * CUT_CAPACITY, run.sizes[tile]),
+            pixels, run.budget);
+        for (std::size_t cell = 0; cell < 16; ++cell) {
+            const std::size_t first = 16 * run.second.packets * numbers[cell];
+            if (expected[cell].uncertain) {
+                check.skip_borderline();
+                continue;
+            }
+            const std::string name = fmt::format("pixel {} of the pass", numbers[cell]);
+            const auto& draws = expected[cell].draws;
+            std::size_t count = 0;
+            while (count < 16 * run.second.packets && run.drawn[first + count] != no_draw) ++count;
+            check.compare_exact(count == draws.size(),
+                                fmt::format("{}: {} draws, not {}", name, count, draws.size()));
+            for (std::size_t i = 0; i < std::min(count, draws.size()); ++i) {
+                const uint entry = run.drawn[first + i];
+                check.compare_exact(
+                    entry >> 24 == draws[i].slot && (entry & 0x7fffff) == draws[i].node,
+                    fmt::format("{}, draw {}: node {}, not {}", name, i, entry & 0x7fffff,
+                                draws[i].node));
+                check.compare(std::abs(run.shares[first + i] - draws[i].share),
+                              1e-3 * draws[i].share,
+                              fmt::format("{}, draw {}: share {}, not {}", name, i,
+                                          run.shares[first + i], draws[i].share));
+            }
+        }
+    }
+    return check;
+}
+
+// The estimates of the second pass, from what it drew.
+Check check_samples(const Run& run, const LightTree& tree, const Scene& scene,
+                    const reference::Tracer& tracer, const Camera& camera,
+                    std::size_t most_entries) {
+    Check check{.stage = "samples (adaptive)", .tolerance = node_tolerance};
+    const std::size_t pixels = pass_pixels(run.second);
+    const std::size_t stride =
+        (pixels * std::max<std::size_t>(run.sizes[0], 16) / most_entries) | 1;
+    for (std::size_t p = 0; p < pixels; p += stride) {
+        const std::size_t item = Run::item(run.second, p);
+        if (!run.hit(item)) continue;
+        const std::size_t tile = item / (std::size_t{ADAPTIVE_TILE} * ADAPTIVE_TILE);
+        const std::size_t cell = item / 16 % 64;
+        const reference::Point point{scene, camera, run.surfaces[item]};
+        const glm::uvec2 at = item_pixel(run.tiles, item);
+        const auto visibility = [&](uint slot) {
+            const double root = run.roots[Run::place(tile, slot, cell)];
+            return root * root;
+        };
+        glm::dvec3 sum(0);
+        double magnitude = 0;
+        bool uncertain = false;
+        const std::size_t begin = 16 * run.second.packets * p;
+        std::size_t end = begin;
+        while (end < begin + 16 * run.second.packets && run.drawn[end] != no_draw) ++end;
+        // The control variate: of all nodes, as they were refined. Those are the cut's nodes, but
+        // for what the 16 pixels of the group wanted: its sum comes from the same reference.
+        std::vector<reference::DrawnPixel> group;
+        const std::size_t quadrant = item / 256;
+        for (std::size_t c = 0; c < 16; ++c) {
+            const std::size_t other = Run::item(
+                run.second, (16 * quadrant + c) * run.second.count + p % run.second.count);
+            reference::DrawnPixel pixel{run.hit(other) ? &run.surfaces[other] : nullptr, 0.5, {}};
+            for (uint slot = 0; slot < run.sizes[tile]; ++slot)
+                pixel.roots.push_back(run.roots[Run::place(tile, slot, 16 * (quadrant % 4) + c)]);
+            group.push_back(pixel);
+        }
+        const reference::PixelDraws own = reference::draw_nodes(
+            tree, scene, camera, std::span(run.nodes).subspan(tile * CUT_CAPACITY, run.sizes[tile]),
+            group, run.budget)[item / 16 % 16];
+        sum += control * own.control;
+        magnitude += glm::length(own.control);
+        for (std::size_t i = begin; i < end; ++i) {
+            const uint entry = run.drawn[i];
+            const double share = run.shares[i];
+            std::size_t first = i;  // of the draws of the same node
+            std::size_t last = i;
+            while (first > begin && run.drawn[first - 1] == entry) --first;
+            while (last + 1 < end && run.drawn[last + 1] == entry) ++last;
+            const glm::dvec3 estimate = reference::node_estimate(tree, entry & 0x7fffff, point);
+            const glm::dvec3 taken = control * visibility(entry >> 24) / share * estimate;
+            sum -= taken;
+            magnitude += glm::length(taken);
+            const auto bits = reference::random_bits(
+                at.y * run.tiles.width + at.x, run.sample.index,
+                1024 * run.second.number + static_cast<uint>(i - begin), run.sample.seed);
+            const double u = (static_cast<double>(i - first) + reference::unit_fraction(bits[0])) /
+                             static_cast<double>(last - first + 1);
+            const reference::Descent d =
+                reference::descend(tree, entry & 0x7fffff, point, u, bits[3]);
+            uncertain = uncertain || d.uncertain;
+            if (d.probability == 0) continue;
+            const reference::Unshadowed term = reference::unshadowed(
+                point.surface, point.material(), camera, tree.lights[d.light],
+                {reference::unit_fraction(bits[1]), reference::unit_fraction(bits[2])});
+            if (term.value == glm::dvec3(0)) continue;
+            const glm::dvec3 value = term.value / (share * d.probability);
+            magnitude += glm::length(value);
+            if (!tracer.occluded(term.shadow)) sum += value;
+            uncertain = uncertain || tracer.occlusion_is_borderline(
+                                         term.shadow, reference::end_rounding(term.shadow));
+        }
+        const double difference = glm::length(glm::dvec3(run.estimates[item]) - sum);
+        const double tolerance = 1e-3 * magnitude + darkest;
+        if (difference > tolerance && (uncertain || own.uncertain)) {
+            check.skip_borderline();
+            continue;
+        }
+        check.compare(difference, tolerance,
+                      fmt::format("pixel ({}, {}): {} is not {}", at.x, at.y,
+                                  show(run.estimates[item]), show(sum)),
+                      magnitude == 0);
+    }
+    return check;
+}
+
+}  // namespace
+
+std::vector<Check> Verifier::adaptive(uint cut_size) {
+    if (scene_.lights.empty()) return {};
+    Tiles tiles = all_tiles(options_.width, options_.height, ADAPTIVE_TILE);
+    tiles.first = tiles.count > most_tiles ? (tiles.count - most_tiles) / 2 : 0;
+    tiles.count -= tiles.first;
+    const Run run(device_, tree_scene_, tiles, cut_size, options_.seed);
+    return {check_cuts(run, tree_, scene_, tracer_, camera_, cut_size), check_visibility(run),
+            check_weights(run, tree_, scene_, camera_, 10 * options_.most_entries),
+            check_samples(run, tree_, scene_, tracer_, camera_, options_.most_entries)};
+}
+
+}  // namespace manylight
