@@ -9,6 +9,7 @@ KERNEL void shadows_trace_packets(BVH_PARAMETERS, __global const float4* origins
     const uint i = get_global_id(0);
     if (i >= packet_count) return;
     __global float16* rows = rays + 4 * (ulong)i;
+    if (!lanes_16(rows[3] > 0.0f)) return;
     Packet packet = make_packet(origins[i].xyz, rows[0], rows[1], rows[2], rows[3]);
     if (occlude_packet(BVH_ARGUMENTS, &packet)) rows[3] = packet.end;
 }

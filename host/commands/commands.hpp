@@ -24,7 +24,8 @@ struct SceneArguments {
 
 struct RenderArguments {
     SceneArguments scene;
-    RenderOptions options;
+    std::string sampler = "auto";
+    RenderOptions options;  // but for the sampler
     std::vector<std::string> outputs;
     std::optional<float> exposure;  // stops over the scene's units; otherwise automatic
     std::string cluster_map;        // .png
@@ -50,7 +51,7 @@ struct BenchArguments {
     SceneArguments scene;
     std::string mesh;
     std::string view;  // far (the default) or close
-    std::string sampler = "contribution-defensive";
+    std::string sampler = "adaptive";
     uint light_samples = 16;
     std::string json;  // file
     unsigned rounds = 7;

@@ -120,6 +120,8 @@ void add_clusters(CLI::App& command, ClusterOptions& clusters) {
 
 std::string sampler_list() {
     std::string text = "\nSamplers:\n";
+    text += fmt::format("  {:<24}{}\n", "auto",
+                        "exhaustive where lights are no more than light samples, else adaptive");
     for (const Sampler& s : all_samplers())
         text +=
             fmt::format("  {:<24}{} ({})\n", s.name, s.summary, s.biased ? "biased" : "unbiased");
@@ -142,7 +144,7 @@ void add_render(CLI::App& app, std::function<int()>& run) {
                      "image, .exr or .png; may be given several times (default: the scene's "
                      "name with .png, here)")
         ->allow_extra_args(false);
-    command->add_option("--sampler", o.sampler, "see below")->capture_default_str();
+    command->add_option("--sampler", arguments->sampler, "see below")->capture_default_str();
     command->add_option("--light-samples", o.light_samples, "light samples per pixel sample")
         ->check(whole(1, 65536))
         ->capture_default_str();
@@ -175,7 +177,7 @@ void add_render(CLI::App& app, std::function<int()>& run) {
                     "  manylight render scene.glb --sampler exhaustive -o reference.exr\n"
                     "  manylight render scene.glb --cluster-map clusters.png --stats stats.json\n");
     command->callback([&run, arguments] {
-        (void)find_sampler(arguments->options.sampler);
+        if (arguments->sampler != "auto") (void)find_sampler(arguments->sampler);
         for (const std::string& name : arguments->options.aovs)
             if (std::ranges::none_of(all_aovs(), [&](const Aov& a) { return a.name == name; }))
                 throw CLI::ValidationError("--aov", "there is no layer " + name);

@@ -11,6 +11,7 @@
 #include "error.hpp"
 #include "output/cluster_map.hpp"
 #include "output/write_file.hpp"
+#include "pipeline/aov.hpp"
 #include "pipeline/frame.hpp"
 
 namespace manylight {
@@ -127,6 +128,12 @@ Metadata make_metadata(const json& parameters, const json& stats) {
     return metadata;
 }
 
+bool asks_clusters(const RenderOptions& options) {
+    return std::ranges::any_of(all_aovs(), [&](const Aov& aov) {
+        return aov.needs_clusters && std::ranges::count(options.aovs, aov.name) > 0;
+    });
+}
+
 void warn_if_not_finite(const Image& image) {
     const auto bad = std::ranges::count_if(image.values, [](float v) { return !std::isfinite(v); });
     if (bad > 0) fmt::print(stderr, "warning: {} pixel values are not finite numbers\n", bad);
@@ -167,14 +174,21 @@ int run_render(const RenderArguments& arguments) {
         throw InputError("--aov {}: layers go to an .exr file; name one with --output",
                          options.aovs[0]);
     if (!arguments.cluster_map.empty()) {
-        if (find_sampler(options.sampler).table != Table::clusters)
+        if (arguments.sampler != "auto" && find_sampler(arguments.sampler).table != Table::clusters)
             throw InputError("--cluster-map {}: sampler {} makes no clusters",
-                             arguments.cluster_map, options.sampler);
+                             arguments.cluster_map, arguments.sampler);
         for (const char* name : {"cluster", "representative"}) options.aovs.emplace_back(name);
     }
 
     const LoadedScene loaded = load(arguments.scene);
     const double load_seconds = seconds_since(start);
+    options.sampler = arguments.sampler;
+    if (arguments.sampler == "auto") {
+        const SamplerChoice choice = choose_sampler(loaded.scene.lights.size(),
+                                                    options.light_samples, asks_clusters(options));
+        options.sampler = choice.name;
+        if (!arguments.quiet) fmt::print("sampler {}: {}\n", choice.name, choice.reason);
+    }
     options.width = loaded.width;
     options.height = loaded.height;
     Device device = Device::open(arguments.scene.device, arguments.scene.threads);

@@ -7,7 +7,7 @@
 namespace manylight {
 
 struct RenderOptions {
-    std::string sampler = "contribution-defensive";
+    std::string sampler = "adaptive";
     uint light_samples = 4;  // per pixel sample; exhaustive takes all lights
     uint spp = 4;            // pixel samples
     uint seed = 0;

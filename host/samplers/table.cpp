@@ -2,6 +2,7 @@
 #include "samplers/table.hpp"
 
 #include "error.hpp"
+#include "shared/adaptive.h"
 
 namespace manylight {
 namespace {
@@ -62,6 +63,17 @@ Mixture mixture_of(const Sampler& sampler, const std::vector<Light>& lights) {
     for (const Light& light : lights) power += light.emission.w;
     return {sampler.shares.visible, sampler.shares.unshadowed, sampler.shares.power,
             static_cast<float>(power)};
+}
+
+SamplerChoice choose_sampler(std::size_t lights, uint light_samples, bool clusters_wanted) {
+    if (clusters_wanted) return {"contribution-defensive", "clusters are asked for"};
+    if (lights == 0) return {"exhaustive", "there is no light"};
+    if (lights <= light_samples)
+        return {"exhaustive", fmt::format("{} light{}, no more than light samples", lights,
+                                          lights == 1 ? "" : "s")};
+    if (lights <= CUT_CAPACITY)
+        return {"adaptive", fmt::format("{} lights, few enough to look at each", lights)};
+    return {"adaptive", fmt::format("{} lights, by cuts of the light tree", lights)};
 }
 
 const Sampler& find_sampler(std::string_view name) {

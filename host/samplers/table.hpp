@@ -3,6 +3,7 @@
 #pragma once
 
 #include <span>
+#include <string>
 #include <string_view>
 
 #include "reference/samples.hpp"
@@ -44,6 +45,16 @@ struct Sampler {
 
 /// How a sampler mixes its rows, for a scene's lights.
 [[nodiscard]] Mixture mixture_of(const Sampler& sampler, const std::vector<Light>& lights);
+
+/// What --sampler auto, the default, is for a scene.
+struct SamplerChoice {
+    std::string_view name;
+    std::string reason;
+};
+
+/// The sampler that does no more than the scene needs.
+[[nodiscard]] SamplerChoice choose_sampler(std::size_t lights, uint light_samples,
+                                           bool clusters_wanted);
 
 /// Throws InputError for a name that is not in the table.
 [[nodiscard]] const Sampler& find_sampler(std::string_view name);

@@ -9,6 +9,11 @@
 
 #define RAY_END(rays, packet, lane) (rays)[64 * (ulong)(packet) + 48 + (lane)]
 
+// Empties a packet.
+static void clear_packet(__global float* rays, ulong packet) {
+    *(__global float16*)(rays + 64 * packet + 48) = (float16)(0.0f);
+}
+
 // Puts a ray in a lane, but for its origin.
 static void put_ray(__global float* rays, ulong packet, uint lane, Ray ray) {
     __global float* row = rays + 64 * packet + lane;

@@ -310,7 +310,7 @@ KERNEL void adaptive_aim(Tiles tiles, Camera camera, Pass pass, __global const S
     __global const uint* own_draws = drawn + first_draw(pass, p);
     __global const float* own_shares = shares + first_draw(pass, p);
     const uint first_packet = pass.packets * p;
-    uint i = 0u;
+    for (uint k = 0u; k < pass.packets; ++k) clear_packet(rays, first_packet + k);
     if (own_draws[0] != NO_DRAW) {
         const uint item = pass_item(pass, p);
         const Receiver receiver = make_receiver(surfaces + item, materials, camera);
@@ -321,7 +321,7 @@ KERNEL void adaptive_aim(Tiles tiles, Camera camera, Pass pass, __global const S
         float4 control = base[p];
         uint first = 0u;  // of the draws of the same node
         uint same = 0u;   // their number
-        for (; i < capacity && own_draws[i] != NO_DRAW; ++i) {
+        for (uint i = 0u; i < capacity && own_draws[i] != NO_DRAW; ++i) {
             const uint entry = own_draws[i];
             const float share = own_shares[i];
             if (i == first + same) {
@@ -334,7 +334,6 @@ KERNEL void adaptive_aim(Tiles tiles, Camera camera, Pass pass, __global const S
             control.xyz -= (CONTROL * root * root / share) * (float3)(c.red, c.green, c.blue);
             const uint packet = first_packet + i / 16u;
             const uint lane = i % 16u;
-            RAY_END(rays, packet, lane) = 0.0f;
             const uint4 bits = random_bits(pixel.y * tiles.width + pixel.x, pixel_sample,
                                            RANDOM_DRAWS * pass.number + i, seed);
             const float u = ((float)(i - first) + unit_float(bits.x)) / (float)same;
@@ -355,7 +354,6 @@ KERNEL void adaptive_aim(Tiles tiles, Camera camera, Pass pass, __global const S
             origins[first_packet + k] = (float4)(shadow_origin(&receiver), 0.0f);
         base[p] = control;
     }
-    for (; i < capacity; ++i) RAY_END(rays, first_packet + i / 16u, i % 16u) = 0.0f;
 }
 
 // estimates[item], cd/m2, and in w the number of rays, of the pass's pixels: base plus what is
