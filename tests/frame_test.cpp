@@ -136,6 +136,9 @@ TEST(frame, emitters_are_seen) {
         const FrameResult front = test::render(device, scene, small_options("uniform"));
         EXPECT_FLOAT_EQ(front.image.values[0], 4);
         EXPECT_FLOAT_EQ(front.image.values[2], 1);
+        RenderOptions hidden = small_options("uniform");
+        hidden.hide_emitters = true;
+        EXPECT_EQ(test::render(device, scene, hidden).image.values[0], 0);
         test::TestScene behind = scene;
         behind.camera = make_camera(find_view(scene.scene, "back"), 4, 4);
         EXPECT_EQ(test::render(device, behind, small_options("uniform")).image.values[0], 0);

@@ -150,6 +150,23 @@ TEST(statistics, unbiased_samplers_are_unbiased) {
     }
 }
 
+// Samplers that go down light trees, on more lights than a cut has nodes, most of them hidden.
+TEST(statistics, cuts_of_many_lights_are_unbiased) {
+    FOR_EACH_DEVICE(device) {
+        const test::TestScene scene = small("many");
+        const Moments reference = render_seeds(device, scene, options_for("exhaustive", 1), 1);
+        for (const std::string_view sampler : {"lighttree", "adaptive"})
+            for (const uint light_samples : {1u, 4u, 20u}) {
+                SCOPED_TRACE(fmt::format("{}, {} light samples", sampler, light_samples));
+                const Statistics s =
+                    judge(render_seeds(device, scene, options_for(sampler, light_samples), 200),
+                          reference, scene);
+                EXPECT_GT(s.smallest_pixel, significance);
+                EXPECT_GT(s.mean, significance);
+            }
+    }
+}
+
 // The same test sees the bias of the sampler that the table calls biased, and that it loses energy.
 TEST(statistics, the_papers_sampler_is_biased) {
     FOR_EACH_DEVICE(device) {

@@ -155,6 +155,8 @@ void add_render(CLI::App& app, std::function<int()>& run) {
         ->check(whole(0, largest_uint))
         ->capture_default_str();
     command->add_flag("--pixel-centre", o.pixel_centre, "all pixel samples at the pixel's centre");
+    command->add_flag("--hide-emitters", o.hide_emitters,
+                      "show emissive surfaces black: what is left is what they light");
     command
         ->add_option("--exposure", arguments->exposure,
                      "stops by which a .png is brighter than the scene (default: automatic)")

@@ -76,6 +76,7 @@ json make_parameters(const RenderOptions& o, const LoadedScene& loaded, uint lig
         {"spp", o.spp},
         {"seed", o.seed},
         {"pixel_centre", !o.jitters()},
+        {"hide_emitters", o.hide_emitters},
         {"width", o.width},
         {"height", o.height},
         {"tile_size", o.clusters.tile_size},

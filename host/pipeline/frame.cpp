@@ -76,8 +76,9 @@ void Frame::prepare() {
         Stopwatch watch(result_.prepare_seconds, device_);
         tree_ = build_light_tree(scene_.lights);
     }
-    stages_ = std::make_shared<Stages>(
-        device_, upload_scene(device_, scene_, bvh_, camera_, tree ? &tree_ : nullptr));
+    DeviceScene uploaded = upload_scene(device_, scene_, bvh_, camera_, tree ? &tree_ : nullptr);
+    if (options_.hide_emitters) uploaded.emission["HAS_EMISSION"] = 0;
+    stages_ = std::make_shared<Stages>(device_, uploaded);
     Stages& s = *stages_;
     if (sampler_.table == Table::cuts)
         s.adaptive.emplace(device_, s.scene, plan_.tiles_per_batch, options_.width,

@@ -13,7 +13,8 @@ struct RenderOptions {
     uint seed = 0;
     unsigned width = 512;
     unsigned height = 512;
-    bool pixel_centre = false;  // all pixel samples at the pixel's centre; always with spp 1
+    bool pixel_centre = false;   // all pixel samples at the pixel's centre; always with spp 1
+    bool hide_emitters = false;  // emitters give light but are black
     ClusterOptions clusters;
     std::size_t memory = 0;  // bytes on the device; 0: half of it, at most 2 GiB
     std::vector<std::string> aovs;

@@ -1,0 +1,114 @@
+# SPDX-License-Identifier: MIT
+"""The table of samplers.sh, which builds the program first.
+
+All images have half the scene's usual size and one or more pixel samples at the pixel's centre, and
+show what emitters light, not the emitters. Errors are relMSE against an image of all lights, or,
+where those are too many, a long run of sampler adaptive; the mean over seeds. Times are prepare +
+render of --stats: light tree, cuts and learning are in, loading, the BVH and compiling are not. The
+error of adaptive at the light tree's time is read between its own runs (log-log).
+"""
+import argparse
+import json
+import math
+import pathlib
+import statistics
+import subprocess
+
+PROGRAM = "build/manylight"
+FOLDER = pathlib.Path("build/samplers")
+HEIGHTS = {"cornell": 256, "dragon": 256}  # others: 180
+BUILTIN = ("cornell", "dragon", "rooms", "city", "glossy", "blinds")
+LADDER = ((4, 1), (8, 1), (16, 1), (8, 4), (8, 8))  # light samples, pixel samples
+MOST_LIGHTS = 20_000  # of which all can be drawn
+
+
+def render(scene, sampler, samples, spp, seed, name, device):
+    """Renders to FOLDER/name.exr; returns prepare + render seconds and all statistics."""
+    subprocess.run([PROGRAM, "render", scene, "--quiet", "--sampler", sampler, "--light-samples",
+                    str(samples), "--spp", str(spp), "--seed", str(seed), "--pixel-centre",
+                    "--hide-emitters", "--height", str(HEIGHTS.get(scene.stem, 180)),
+                    "-o", FOLDER / f"{name}.exr", "--stats", FOLDER / "stats.json", *device],
+                   check=True)
+    stats = json.loads((FOLDER / "stats.json").read_text())
+    return stats["seconds"]["prepare"] + stats["seconds"]["render"], stats
+
+
+def relmse(name, reference):
+    run = subprocess.run([PROGRAM, "compare", FOLDER / f"{name}.exr", FOLDER / f"{reference}.exr",
+                          "--json"], check=True, capture_output=True, text=True)
+    return json.loads(run.stdout)["relmse"]
+
+
+def make_reference(scene, device):
+    """Returns the image's name and its own error (0: all lights)."""
+    lights = render(scene, "uniform", 1, 1, 0, "scratch", device)[1]["lights"]
+    if lights <= MOST_LIGHTS:
+        spp = max(1, min(32, 20_000 // lights))
+        render(scene, "exhaustive", 1, spp, 0, "reference", device)
+        return f"all {lights} lights, {spp} spp", 0
+    render(scene, "adaptive", 16, 128, 1, "reference", device)
+    render(scene, "adaptive", 16, 128, 2, "other", device)
+    return "adaptive, 128 spp", relmse("other", "reference") / 2
+
+
+def measure(scene, seeds, device):
+    made, own_error = make_reference(scene, device)
+    runs = {("lighttree", 4, 1): [], ("lighttree", 16, 1): []}
+    runs |= {("adaptive", *step): [] for step in LADDER}
+    for seed in range(seeds + 1):  # all take turns; the first round compiles
+        for key, results in runs.items():
+            seconds = render(scene, *key, seed, "image", device)[0]
+            if seed > 0:
+                results.append((seconds, relmse("image", "reference")))
+    time = {key: statistics.median(r[0] for r in results) for key, results in runs.items()}
+    error = {key: statistics.fmean(r[1] for r in results) for key, results in runs.items()}
+    target = time["lighttree", 16, 1]
+    points = sorted((time["adaptive", *step], error["adaptive", *step]) for step in LADDER)
+    after = next((i for i, p in enumerate(points) if p[0] >= target), len(points) - 1)
+    (t0, e0), (t1, e1) = points[max(after - 1, 0)], points[max(after, 1)]
+    slope = math.log(e1 / e0) / math.log(t1 / t0)
+    equal = e0 * math.exp(slope * math.log(target / t0))
+    return {"reference": made, "reference_error": own_error,
+            "same_samples": {"lighttree": error["lighttree", 4, 1],
+                             "adaptive": error["adaptive", 4, 1]},
+            "equal_time": {"seconds": target, "lighttree": error["lighttree", 16, 1],
+                           "adaptive": equal},
+            "runs": [{"sampler": k[0], "light_samples": k[1], "spp": k[2], "seconds": time[k],
+                      "relmse": error[k]} for k in runs]}
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--scenes", type=pathlib.Path)
+    parser.add_argument("--only", default="")
+    parser.add_argument("--seeds", type=int, default=3)
+    parser.add_argument("--device")
+    arguments = parser.parse_args()
+    FOLDER.mkdir(parents=True, exist_ok=True)
+    if arguments.scenes:
+        scenes = sorted(arguments.scenes.glob("*.glb"))
+    else:
+        scenes = [FOLDER / f"{name}.glb" for name in BUILTIN]
+        for scene in scenes:
+            subprocess.run([PROGRAM, "scene", scene.stem, "-o", scene], check=True,
+                           stdout=subprocess.DEVNULL)
+    device = ["--device", arguments.device] if arguments.device else []
+    table = {}
+    print("relMSE            4 light samples                 in the light tree's time for 16")
+    print("           lighttree  adaptive   ratio   seconds  lighttree  adaptive   ratio")
+    for scene in scenes:
+        if arguments.only and scene.stem not in arguments.only.split(","):
+            continue
+        row = table[scene.stem] = measure(scene, arguments.seeds, device)
+        same, equal = row["same_samples"], row["equal_time"]
+        print(f"{scene.stem:10} {same['lighttree']:9.4f} {same['adaptive']:9.5f} "
+              f"{same['lighttree'] / same['adaptive']:7.1f} {equal['seconds']:9.3f} "
+              f"{equal['lighttree']:10.4f} {equal['adaptive']:9.5f} "
+              f"{equal['lighttree'] / equal['adaptive']:7.1f}", flush=True)
+        if row["reference_error"]:
+            print(f"           (reference: {row['reference']}, its own relMSE "
+                  f"{row['reference_error']:.5f})")
+    (FOLDER / "samplers.json").write_text(json.dumps(table, indent=2) + "\n")
+
+
+main()
