@@ -3,6 +3,7 @@
 // the estimate V^ of the share of a node's light that a cell sees.
 #include "lib/cells.h"
 #include "lib/rays.h"
+#include "shared/light_tree.h"
 
 // Rays traced and passed share a word: counts[...] = traced + 65536 passed. A count ends here, long
 // before it overflows.
@@ -71,6 +72,60 @@ KERNEL void visibility_sum(Tiles tiles, __global const uint* cut_sizes,
     totals[tile * CUT_CAPACITY + slot] = total;
 }
 
+// Trials that neighbouring tiles lend a slot at most.
+#define MOST_LENT 16.0f
+
+// The slot of a tile's cut whose node holds a light.
+static uint find_slot(__global const uint* cut, uint size, __global const LightNode* nodes,
+                      uint light) {
+    uint slot = 0u;
+    for (uint count = size; count > 1u;) {
+        const uint half_count = count / 2u;
+        if (nodes[cut[slot + half_count]].first <= light) slot += half_count;
+        count -= half_count;
+    }
+    return slot;
+}
+
+// shared[...]: a slot's trials with those that the four neighbouring tiles of the run lend it, by
+// the lights that their nodes have in common with it. One slot per work-item.
+KERNEL void visibility_share(Tiles tiles, __global const LightNode* nodes,
+                             __global const uint* cut_nodes, __global const uint* cut_sizes,
+                             __global const Trials* totals, __global Trials* shared) {
+    const uint tile = get_global_id(0) / CUT_CAPACITY;
+    const uint slot = get_global_id(0) % CUT_CAPACITY;
+    if (tile >= tiles.count || slot >= cut_sizes[tile]) return;
+    __global const LightNode* node = nodes + cut_nodes[tile * CUT_CAPACITY + slot];
+    const uint end = node->first + node->count;
+    const int column = (tiles.first + tile) % tiles.columns;
+    Trials lent = {0.0f, 0.0f};
+    for (uint side = 0u; side < 4u; ++side) {
+        const int step = side % 2u == 0u ? 1 : -1;
+        const int other = (int)tile + (side < 2u ? step : step * (int)tiles.columns);
+        const bool leaves_row =
+            side < 2u && (column + step < 0 || column + step >= (int)tiles.columns);
+        if (leaves_row || other < 0 || other >= (int)tiles.count) continue;
+        const uint size = cut_sizes[other];
+        if (size == 0u) continue;
+        __global const uint* cut = cut_nodes + other * CUT_CAPACITY;
+        for (uint i = find_slot(cut, size, nodes, node->first); i < size; ++i) {
+            const uint first = nodes[cut[i]].first;
+            const uint count = nodes[cut[i]].count;
+            if (first >= end) break;
+            const uint common = min(first + count, end) - max(first, node->first);
+            const float share = (float)common / (float)count;
+            const Trials theirs = totals[other * CUT_CAPACITY + i];
+            lent.traced += share * theirs.traced;
+            lent.passed += share * theirs.passed;
+        }
+    }
+    const float scale = lent.traced > MOST_LENT ? MOST_LENT / lent.traced : 1.0f;
+    Trials sum = totals[tile * CUT_CAPACITY + slot];
+    sum.traced += scale * lent.traced;
+    sum.passed += scale * lent.passed;
+    shared[tile * CUT_CAPACITY + slot] = sum;
+}
+
 // Slots that are neighbours in the tree's order share what is known of them.
 #define GROUP 8u
 // What is taken for granted before any ray: a share of rays that pass, worth one ray.
@@ -96,13 +151,13 @@ static float16 shrink_16(float16 traced, float16 passed, float16 towards) {
 // roots[...] = sqrt(V^) of every cell, shrunk from the tile's mean to the mean of GROUP slots, the
 // slot, 16 x 16, 8 x 8 and 4 x 4 pixels. GROUP slots of a tile per work-item.
 KERNEL void visibility_estimate(Tiles tiles, __global const uint* cut_sizes,
-                                __global const Trials* totals, __global const uint16* counts,
+                                __global const Trials* shared, __global const uint16* counts,
                                 __global float16* roots) {
     const uint tile = get_global_id(0) / (CUT_CAPACITY / GROUP);
     const uint first = get_global_id(0) % (CUT_CAPACITY / GROUP) * GROUP;
     if (tile >= tiles.count || first >= cut_sizes[tile]) return;
     const uint size = cut_sizes[tile];
-    __global const Trials* own = totals + tile * CUT_CAPACITY;
+    __global const Trials* own = shared + tile * CUT_CAPACITY;
     Trials all = {0.0f, 0.0f};
     for (uint slot = 0u; slot < size; ++slot) add_trials(&all, own[slot]);
     Trials group = {0.0f, 0.0f};

@@ -43,7 +43,8 @@ class CommandTest(unittest.TestCase):
         run = self.run_program("render", self.cornell, "--height", 32)
         self.assertEqual(self.files(), ["cornell.png"])
         self.assertIn("64 lights", run.stdout)
-        self.assertIn("matrix", run.stdout)  # what memory will be needed
+        self.assertIn("sampler adaptive", run.stdout)
+        self.assertIn("pixels in work", run.stdout)  # what memory will be needed
         self.assertEqual(run.stderr, "")     # no progress bar where there is no terminal
 
     def test_options_may_come_before_the_file(self):

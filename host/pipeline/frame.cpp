@@ -188,10 +188,10 @@ void Frame::sample(const Tiles& batch, Progress& progress) {
             done += static_cast<double>(samples);
             report(progress, batch, done);
         };
-        if (s.adaptive) {
-            if (light_samples_ > 0 && i == 0) s.adaptive->start(batch, s.surfaces, options_.seed);
+        if (s.adaptive && light_samples_ > 0) {
+            if (i == 0) s.adaptive->start(batch, s.surfaces, options_.seed);
             s.adaptive->draw(batch, sample, s.surfaces, s.estimates, count);
-        } else {
+        } else if (s.samples) {
             s.samples->draw(batch, sample, light_samples_, s.surfaces, s.tables, s.estimates,
                             count);
         }

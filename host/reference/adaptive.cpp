@@ -212,8 +212,39 @@ TileCut make_cut(const LightTree& tree, const Scene& scene, const Tracer& tracer
     return out;
 }
 
-std::vector<double> visibility_roots(std::span<const Trials> probes, std::span<const Rays> counts) {
-    const std::size_t size = probes.size();
+std::vector<Rays> share_rays(const LightTree& tree, const Tiles& tiles, uint tile,
+                             std::span<const TileRays> all) {
+    std::vector<Rays> out = all[tile].totals;
+    const int x = static_cast<int>((tiles.first + tile) % tiles.columns);
+    const int y = static_cast<int>((tiles.first + tile) / tiles.columns);
+    for (std::size_t slot = 0; slot < out.size(); ++slot) {
+        const LightNode& node = tree.nodes[all[tile].nodes[slot]];
+        Rays lent;
+        for (const glm::ivec2 step : {glm::ivec2(1, 0), {-1, 0}, {0, 1}, {0, -1}}) {
+            if (x + step.x < 0 || x + step.x >= static_cast<int>(tiles.columns)) continue;
+            const int other = (y + step.y) * static_cast<int>(tiles.columns) + x + step.x -
+                              static_cast<int>(tiles.first);
+            if (other < 0 || other >= static_cast<int>(all.size())) continue;
+            for (std::size_t i = 0; i < all[other].nodes.size(); ++i) {
+                const LightNode& theirs = tree.nodes[all[other].nodes[i]];
+                const int common = static_cast<int>(std::min(node.first + node.count,
+                                                             theirs.first + theirs.count)) -
+                                   static_cast<int>(std::max(node.first, theirs.first));
+                if (common <= 0) continue;
+                const double share = static_cast<double>(common) / theirs.count;
+                lent.traced += share * all[other].totals[i].traced;
+                lent.passed += share * all[other].totals[i].passed;
+            }
+        }
+        const double scale = lent.traced > 16 ? 16 / lent.traced : 1;
+        out[slot].traced += scale * lent.traced;
+        out[slot].passed += scale * lent.passed;
+    }
+    return out;
+}
+
+std::vector<double> visibility_roots(std::span<const Rays> totals, std::span<const Rays> counts) {
+    const std::size_t size = totals.size();
     const auto add = [](Rays& sum, const Rays& r) {
         sum.traced += r.traced;
         sum.passed += r.passed;
@@ -228,14 +259,8 @@ std::vector<double> visibility_roots(std::span<const Trials> probes, std::span<c
             add(sum, counts[64 * slot + cell]);
         return sum;
     };
-    std::vector<Rays> totals;
     Rays all;
-    for (std::size_t slot = 0; slot < size; ++slot) {
-        Rays total = part_of(slot, 0, 64);
-        add(total, {probes[slot].traced, probes[slot].passed});
-        totals.push_back(total);
-        add(all, total);
-    }
+    for (const Rays& total : totals) add(all, total);
     std::vector<double> roots(64 * size);
     for (std::size_t slot = 0; slot < size; ++slot) {
         Rays group;

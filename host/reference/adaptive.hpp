@@ -32,9 +32,20 @@ struct TileCut {
                                std::span<const Surface> surfaces, uint cut_size, uint probe_rays,
                                uint seed);
 
-/// Stage visibility for one tile: [64 * slot + cell] the root of V^, from the slots' probes and
-/// what cells counted, [64 * slot + cell], cells in Morton order.
-[[nodiscard]] std::vector<double> visibility_roots(std::span<const Trials> probes,
+/// What is known of a tile's slots.
+struct TileRays {
+    std::vector<uint> nodes;   // [slot], the cut
+    std::vector<Rays> totals;  // [slot], probes and all cells
+};
+
+/// [slot] a tile's totals with what the tiles beside, above and below it lend: their rays by the
+/// share of each node's lights that it has in common with the slot's, 16 rays at most.
+[[nodiscard]] std::vector<Rays> share_rays(const LightTree& tree, const Tiles& tiles, uint tile,
+                                           std::span<const TileRays> all);
+
+/// Stage visibility for one tile: [64 * slot + cell] the root of V^, from what is known of the
+/// slots, and what cells counted, [64 * slot + cell], cells in Morton order.
+[[nodiscard]] std::vector<double> visibility_roots(std::span<const Rays> shared,
                                                    std::span<const Rays> counts);
 
 struct Drawn {

@@ -11,18 +11,25 @@ constexpr std::size_t group = 8;  // slots of a work-item of visibility_estimate
 Visibility::Visibility(Device& device, std::size_t tiles)
     : counts(device.allocate<uint>(tiles * CUT_CAPACITY * CELLS_PER_TILE)),
       totals(device.allocate<Trials>(tiles * CUT_CAPACITY)),
+      shared(device.allocate<Trials>(tiles * CUT_CAPACITY)),
       roots(device.allocate<float>(tiles * CUT_CAPACITY * CELLS_PER_TILE)) {}
 
 Arguments Visibility::arguments() const {
-    return Arguments().set("counts", counts).set("totals", totals).set("roots", roots);
+    return Arguments()
+        .set("counts", counts)
+        .set("totals", totals)
+        .set("shared", shared)
+        .set("roots", roots);
 }
 
-VisibilityStage::VisibilityStage(Device& device, const DeviceScene& scene) {
+VisibilityStage::VisibilityStage(Device& device, const DeviceScene& scene)
+    : scene_(scene.arguments) {
     const auto kernel = [&](const char* name) {
         return device.kernel("visibility.cl", name, scene.traversal, "visibility");
     };
     learn_ = kernel("visibility_learn");
     sum_ = kernel("visibility_sum");
+    share_ = kernel("visibility_share");
     estimate_ = kernel("visibility_estimate");
 }
 
@@ -32,8 +39,10 @@ void VisibilityStage::learn(const Pass& pass, const Arguments& draws, Visibility
 }
 
 void VisibilityStage::estimate(const Tiles& tiles, const Cuts& cuts, Visibility& out) {
-    const Arguments arguments = cuts.arguments().set(out.arguments()).set("tiles", tiles);
+    const Arguments arguments =
+        Arguments(scene_).set(cuts.arguments()).set(out.arguments()).set("tiles", tiles);
     sum_.launch(std::size_t{tiles.count} * CUT_CAPACITY, arguments);
+    share_.launch(std::size_t{tiles.count} * CUT_CAPACITY, arguments);
     estimate_.launch(std::size_t{tiles.count} * CUT_CAPACITY / group, arguments);
 }
 

@@ -12,18 +12,21 @@ struct Visibility {
 
     Buffer<uint> counts;    // over slots and cells: rays traced + 65536 rays passed
     Buffer<Trials> totals;  // [tile * CUT_CAPACITY + slot]: of the tile, probes included
+    Buffer<Trials> shared;  // likewise, with what neighbouring tiles lend
     Buffer<float> roots;    // over slots and cells: the root of the estimated visibility V^
 
-    /// As kernels' arguments counts, totals, roots.
+    /// As kernels' arguments counts, totals, shared, roots.
     [[nodiscard]] Arguments arguments() const;
 
     [[nodiscard]] static constexpr std::size_t tile_bytes() {
-        return CUT_CAPACITY * (CELLS_PER_TILE * (sizeof(uint) + sizeof(float)) + sizeof(Trials));
+        return CUT_CAPACITY *
+               (CELLS_PER_TILE * (sizeof(uint) + sizeof(float)) + 2 * sizeof(Trials));
     }
 };
 
 /// Stage visibility: counts shadow rays, and estimates V^ from the counts, shrunk from level to
-/// level: all slots of a tile, eight neighbours, the slot, then 16 x 16, 8 x 8 and 4 x 4 pixels.
+/// level: all slots of a tile (and some of what its neighbours know), eight neighbours, the slot,
+/// then 16 x 16, 8 x 8 and 4 x 4 pixels.
 class VisibilityStage {
   public:
     VisibilityStage(Device& device, const DeviceScene& scene);
@@ -35,8 +38,10 @@ class VisibilityStage {
     void estimate(const Tiles& tiles, const Cuts& cuts, Visibility& out);
 
   private:
+    Arguments scene_;
     Kernel learn_;
     Kernel sum_;
+    Kernel share_;
     Kernel estimate_;
 };
 
