@@ -47,6 +47,7 @@ class AdaptiveStage {
 
   private:
     Arguments scene_;
+    bool groups_;  // whether nodes may hold several lights
     ShadowStage shadows_;
     Kernel draw_;
     Kernel aim_;

@@ -47,6 +47,7 @@ static uint lowest(uint lanes) { return 31u - (uint)clz(lanes & (0u - lanes)); }
 #define LANE(vector, lane) (((const float*)&(vector))[lane])
 #define SET_LANE(vector, lane, value) ((float*)&(vector))[lane] = (value)
 #define INT_LANE(vector, lane) (((int*)&(vector))[lane])
+#define UINT_LANE(vector, lane) (((uint*)&(vector))[lane])
 
 // A segment origin + t direction, 0 < t < end.
 typedef struct Ray {

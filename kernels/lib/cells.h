@@ -17,10 +17,10 @@ static uint pass_item(Pass pass, uint p) {
 
 static uint pass_pixels(Pass pass) { return pass.tile_count * CELLS_PER_TILE * pass.count; }
 
-// A drawn node: its slot, its index, and whether it is a single point.
+// A drawn node: its slot, its index, and whether its ray is made (it is a single light).
 #define DRAWN_SLOT(entry) ((entry) >> 24)
 #define DRAWN_NODE(entry) ((entry)&0x7fffffu)
-#define SINGLE_POINT 0x800000u
+#define AIMED 0x800000u
 
 // drawn[...] of a pixel that has no more draws.
 #define NO_DRAW 0xffffffffu

@@ -22,6 +22,7 @@ typedef struct NAMED(Points) {
 #if HAS_GGX
     REAL vx, vy, vz;  // unit, to the camera
     REAL metallic, alpha, specular;
+    bool glossy;  // whether any of them has a lobe
 #endif
 } NAMED(Points);
 
@@ -33,12 +34,9 @@ static REAL NAMED(dot3)(REAL ax, REAL ay, REAL az, REAL bx, REAL by, REAL bz) {
     return fma(ax, bx, fma(ay, by, az * bz));
 }
 
-// (k + sqrt(k^2 + v)) / 2: max(k, 0), smoothed over sqrt(v); positive where v is, whatever the
-// rounding.
-static REAL NAMED(soft)(REAL k, REAL v) {
-    const REAL t = 0.5f * (fabs(k) + sqrt(fma(k, k, v)));
-    return WHERE(k >= 0.0f, t, 0.25f * v / max(t, (REAL)(1e-30f)));
-}
+// (k + sqrt(k^2 + v)) / 2: max(k, 0), smoothed over sqrt(v). At least 0.19 v, which it never falls
+// below for k in [-1, 1] and v up to 4/3, but by rounding.
+static REAL NAMED(soft)(REAL k, REAL v) { return max(0.5f * (k + sqrt(fma(k, k, v))), 0.19f * v); }
 
 // The lights' part: their intensity's factor and the unit direction to their centre. 0 where none
 // of them can be above the surface.
@@ -112,49 +110,58 @@ static REAL NAMED(node_geometry)(__global const LightNode* node, __global const 
     return WHERE(k + node->intensity.w * inverse <= 0.0f, (REAL)(0.0f), incidence * emission);
 }
 
+// Radiance reflected to the camera per illuminance from unit directions w: glTF's BRDF (lib/brdf.h)
+// with a lobe that is widened by the lights' squared angular spread, times cosines and all else in
+// `factor`.
+static NAMED(Color) NAMED(reflect)(const NAMED(Points) * p, REAL wx, REAL wy, REAL wz, REAL spread,
+                                   REAL factor, float3 intensity) {
+    NAMED(Color) c;
+#if HAS_GGX
+    if (p->glossy) {
+        REAL hx = wx + p->vx, hy = wy + p->vy, hz = wz + p->vz;
+        const REAL scale = 1.0f / sqrt(max(NAMED(dot3)(hx, hy, hz, hx, hy, hz), (REAL)(1e-30f)));
+        hx *= scale;
+        hy *= scale;
+        hz *= scale;
+        const REAL a2 = fma(p->alpha, p->alpha, 0.25f * spread);
+        const REAL n_h = NAMED(dot3)(p->nx, p->ny, p->nz, hx, hy, hz);
+        const REAL n_in = max(NAMED(dot3)(p->nx, p->ny, p->nz, wx, wy, wz), (REAL)(0.0f));
+        const REAL n_out =
+            max(fabs(NAMED(dot3)(p->nx, p->ny, p->nz, p->vx, p->vy, p->vz)), (REAL)(1e-4f));
+        // 1 - (N.H)^2 would cancel for small alpha.
+        const REAL sx = fma(p->ny, hz, -p->nz * hy);
+        const REAL sy = fma(p->nz, hx, -p->nx * hz);
+        const REAL sz = fma(p->nx, hy, -p->ny * hx);
+        const REAL width = fma(a2 * n_h, n_h, NAMED(dot3)(sx, sy, sz, sx, sy, sz));
+        const REAL smith = (n_in + sqrt(fma(1.0f - a2, n_in * n_in, a2))) *
+                           (n_out + sqrt(fma(1.0f - a2, n_out * n_out, a2)));
+        const REAL lobe = a2 / (M_PI_F * width * width * smith);
+        const REAL m = max(1.0f - fabs(NAMED(dot3)(p->vx, p->vy, p->vz, hx, hy, hz)), (REAL)(0.0f));
+        const REAL fresnel = (m * m) * (m * m) * m;
+        const REAL dielectric = p->specular * fma((REAL)(0.96f), fresnel, (REAL)(0.04f));
+        const REAL kd = (1.0f - p->metallic) * (1.0f - dielectric) * M_1_PI_F;
+        const REAL ks = (1.0f - p->metallic) * dielectric * lobe + p->metallic * lobe * fresnel;
+        const REAL base = kd + p->metallic * lobe * (1.0f - fresnel);
+        c.red = factor * intensity.x * fma(p->red, base, ks);
+        c.green = factor * intensity.y * fma(p->green, base, ks);
+        c.blue = factor * intensity.z * fma(p->blue, base, ks);
+        return c;
+    }
+#endif
+    factor *= M_1_PI_F;
+    c.red = factor * intensity.x * p->red;
+    c.green = factor * intensity.y * p->green;
+    c.blue = factor * intensity.z * p->blue;
+    return c;
+}
+
 // The node's radiance reflected to the camera, cd/m2: intensity x geometry x BRDF towards the
-// centre, whose lobe is widened by the lights' angular spread.
+// centre.
 static NAMED(Color) NAMED(node_estimate)(__global const LightNode* node,
                                          __global const Light* lights, const NAMED(Points) * p) {
     REAL wx, wy, wz, spread;
     const REAL geometry = NAMED(node_geometry)(node, lights, p, &wx, &wy, &wz, &spread);
-    const float4 intensity = node->intensity;
-    NAMED(Color) c;
-#if HAS_GGX
-    REAL hx = wx + p->vx, hy = wy + p->vy, hz = wz + p->vz;
-    const REAL scale = 1.0f / sqrt(max(NAMED(dot3)(hx, hy, hz, hx, hy, hz), (REAL)(1e-30f)));
-    hx *= scale;
-    hy *= scale;
-    hz *= scale;
-    const REAL a2 = fma(p->alpha, p->alpha, 0.25f * spread);
-    const REAL n_h = NAMED(dot3)(p->nx, p->ny, p->nz, hx, hy, hz);
-    const REAL n_in = max(NAMED(dot3)(p->nx, p->ny, p->nz, wx, wy, wz), (REAL)(0.0f));
-    const REAL n_out =
-        max(fabs(NAMED(dot3)(p->nx, p->ny, p->nz, p->vx, p->vy, p->vz)), (REAL)(1e-4f));
-    // 1 - (N.H)^2 would cancel for small alpha.
-    const REAL sx = fma(p->ny, hz, -p->nz * hy);
-    const REAL sy = fma(p->nz, hx, -p->nx * hz);
-    const REAL sz = fma(p->nx, hy, -p->ny * hx);
-    const REAL width = fma(a2 * n_h, n_h, NAMED(dot3)(sx, sy, sz, sx, sy, sz));
-    const REAL smith = (n_in + sqrt(fma(1.0f - a2, n_in * n_in, a2))) *
-                       (n_out + sqrt(fma(1.0f - a2, n_out * n_out, a2)));
-    const REAL lobe = a2 / (M_PI_F * width * width * smith);
-    const REAL m = max(1.0f - fabs(NAMED(dot3)(p->vx, p->vy, p->vz, hx, hy, hz)), (REAL)(0.0f));
-    const REAL fresnel = (m * m) * (m * m) * m;
-    const REAL dielectric = p->specular * fma((REAL)(0.96f), fresnel, (REAL)(0.04f));
-    const REAL kd = (1.0f - p->metallic) * (1.0f - dielectric) * M_1_PI_F;
-    const REAL ks = (1.0f - p->metallic) * dielectric * lobe + p->metallic * lobe * fresnel;
-    const REAL base = kd + p->metallic * lobe * (1.0f - fresnel);
-    c.red = geometry * intensity.x * fma(p->red, base, ks);
-    c.green = geometry * intensity.y * fma(p->green, base, ks);
-    c.blue = geometry * intensity.z * fma(p->blue, base, ks);
-#else
-    const REAL factor = geometry * M_1_PI_F;
-    c.red = factor * intensity.x * p->red;
-    c.green = factor * intensity.y * p->green;
-    c.blue = factor * intensity.z * p->blue;
-#endif
-    return c;
+    return NAMED(reflect)(p, wx, wy, wz, spread, geometry, node->intensity.xyz);
 }
 
 static REAL NAMED(color_luminance)(NAMED(Color) c) {

@@ -21,6 +21,7 @@ static Points_1 point_of(const Receiver* r) {
     p.metallic = r->material.base_color.w;
     p.alpha = r->material.roughness;
     p.specular = r->material.specular;
+    p.glossy = p.metallic > 0.0f || p.specular > 0.0f;
 #endif
     return p;
 }

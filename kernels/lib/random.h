@@ -21,6 +21,23 @@ static uint4 random_bits(uint pixel, uint pixel_sample, uint dimension, uint see
     return v;
 }
 
+// The same for 16 pixels and dimensions: v[0] to v[3].
+static void random_bits_16(uint16 pixels, uint pixel_sample, uint16 dimensions, uint seed,
+                           uint16* v) {
+    v[0] = pixels * 1664525u + 1013904223u;
+    v[1] = (uint16)(pixel_sample * 1664525u + 1013904223u);
+    v[2] = dimensions * 1664525u + 1013904223u;
+    v[3] = (uint16)(seed * 1664525u + 1013904223u);
+    for (uint round = 0u; round < 2u; ++round) {
+        v[0] += v[1] * v[3];
+        v[1] += v[2] * v[0];
+        v[2] += v[0] * v[1];
+        v[3] += v[1] * v[2];
+        if (round == 0u)
+            for (uint i = 0u; i < 4u; ++i) v[i] ^= v[i] >> 16u;
+    }
+}
+
 // 32 bits for step i of what starts with 32 random bits: pcg_hash of the same paper.
 static uint step_bits(uint bits, uint i) {
     const uint state = (bits + i * 0x9e3779b9u) * 747796405u + 2891336453u;

@@ -13,6 +13,9 @@
 #include "lib/points.h"
 #define LANES 16
 #include "lib/node_estimate.h"
+#undef LANES
+
+#include "lib/direct_16.h"
 
 // The share of what is thought to be visible that is taken from the nodes' estimates rather than
 // from shadow rays: a control variate.
@@ -22,6 +25,9 @@
 #define REFINED_SHARE 0.25f
 #define MOST_SPLITS 64u
 #define MOST_NODES (CUT_CAPACITY + MOST_SPLITS)
+
+// A weighed node: as a drawn one, but for its mark, which says whether it is a single point.
+#define SINGLE_POINT 0x800000u
 
 static uint node_entry(__global const LightNode* nodes, uint node, uint slot) {
     const uint kind = nodes[node].kind;
@@ -48,7 +54,40 @@ static void set_point(Points_16* all, uint lane, Points_1 one) {
     SET_POINT(metallic);
     SET_POINT(alpha);
     SET_POINT(specular);
+    all->glossy = all->glossy || one.glossy;
 #endif
+}
+
+static void set_origin(Origins_16* all, uint lane, float3 origin, float3 geometric) {
+    SET_LANE(all->x, lane, origin.x);
+    SET_LANE(all->y, lane, origin.y);
+    SET_LANE(all->z, lane, origin.z);
+    SET_LANE(all->gx, lane, geometric.x);
+    SET_LANE(all->gy, lane, geometric.y);
+    SET_LANE(all->gz, lane, geometric.z);
+}
+
+// Points on a light at random.
+static void random_points(uint16 pixels, uint pixel_sample, uint16 dimensions, uint seed,
+                          float16* u, float16* v) {
+    uint16 bits[4];
+    random_bits_16(pixels, pixel_sample, dimensions, seed, bits);
+    *u = convert_float16(bits[1] >> 8u) * 0x1p-24f;
+    *v = convert_float16(bits[2] >> 8u) * 0x1p-24f;
+}
+
+// A draw's ray, and what it contributes where nothing is in its way (lib/samples.h).
+static void put_sample(__global float* rays, __global float* values, uint place, const Direct_16* d,
+                       uint cell) {
+    __global float* row = rays + 64 * (ulong)(place / 16u) + place % 16u;
+    row[0] = LANE(d->x, cell);
+    row[16] = LANE(d->y, cell);
+    row[32] = LANE(d->z, cell);
+    row[48] = d->end;
+    __global float* lanes = values + 48 * (ulong)(place / 16u) + place % 16u;
+    lanes[0] = LANE(d->value.red, cell);
+    lanes[16] = LANE(d->value.green, cell);
+    lanes[32] = LANE(d->value.blue, cell);
 }
 
 // The weights of 16 pixels' nodes, of which the first `size` are in use.
@@ -84,9 +123,9 @@ static bool wants_children(__global const LightNode* node, const Points_16* p, f
                            float16 limit) {
     const float16 dx = node->centre.x - p->px, dy = node->centre.y - p->py,
                   dz = node->centre.z - p->pz;
-    const float16 distance = sqrt(fma(dx, dx, fma(dy, dy, dz * dz)));
-    const float16 near = node->infinite ? (float16)(node->intensity.w)
-                                        : min(node->intensity.w / max(distance, 1e-20f), 1.0f);
+    const float16 inverse = 1.0f / sqrt(max(fma(dx, dx, fma(dy, dy, dz * dz)), 1e-30f));
+    const float16 near =
+        node->infinite ? (float16)(node->intensity.w) : min(node->intensity.w * inverse, 1.0f);
     return lanes_16(weight * near > limit) != 0u;
 }
 
@@ -201,13 +240,19 @@ KERNEL void adaptive_draw(Tiles tiles, Camera camera, Pass pass, Budget budget,
                           __global const uint* cut_nodes, __global const uint* cut_sizes,
                           __global const float16* roots, uint pixel_sample, uint seed,
                           __global uint* drawn, __global float* shares, __global float4* base,
-                          __global Expectation* expectations) {
+                          __global Expectation* expectations, __global float4* origins,
+                          __global float* rays, __global float* values) {
     const uint local_quadrant = get_global_id(0) / pass.count;
     const uint place = get_global_id(0) % pass.count;
     if (local_quadrant >= 4u * pass.tile_count) return;
     const uint tile = pass.first_tile + local_quadrant / 4u;
     const uint quadrant = 4u * pass.first_tile + local_quadrant;
     Points_16 points;
+    Origins_16 from;
+    uint16 pixels = (uint16)(0u);
+#if HAS_GGX
+    points.glossy = false;
+#endif
     int16 valid = (int16)(0);
     float16 position = (float16)(0.0f);
     const float shift = unit_float(
@@ -219,23 +264,38 @@ KERNEL void adaptive_draw(Tiles tiles, Camera camera, Pass pass, Budget budget,
         Receiver receiver;
         if (hit) {
             receiver = make_receiver(surfaces + item, materials, camera);
-            SET_LANE(position, cell, draw_start(item_pixel(tiles, item), shift));
+            const uint2 pixel = item_pixel(tiles, item);
+            SET_LANE(position, cell, draw_start(pixel, shift));
+            UINT_LANE(pixels, cell) = pixel.y * tiles.width + pixel.x;
         } else {
             receiver.position = receiver.normal = receiver.to_camera = (float3)(1.0f);
-            receiver.material = materials[0];
+            receiver.geometric = receiver.normal;
+            receiver.offset = 0.0f;
+            receiver.material.base_color = (float4)(0.0f);
+            receiver.material.roughness = 1.0f;
+            receiver.material.specular = 0.0f;
         }
         set_point(&points, cell, point_of(&receiver));
+        const float3 origin = shadow_origin(&receiver);
+        set_origin(&from, cell, origin, receiver.geometric);
+        const uint p = (16u * local_quadrant + cell) * pass.count + place;
+        for (uint k = 0u; k < pass.packets; ++k) {
+            clear_packet(rays, pass.packets * p + k);
+            origins[pass.packets * p + k] = (float4)(origin, 0.0f);
+        }
     }
-    uint counts[16];
-    for (uint cell = 0u; cell < 16u; ++cell) counts[cell] = 0u;
+    uint16 counts = (uint16)(0u);
     Weights w;
     w.size = 0u;
     w.sum = w.visible_sum = (float16)(0.0f);
     w.control.red = w.control.green = w.control.blue = (float16)(0.0f);
     const uint capacity = 16u * pass.packets;
+    const uint first_pixel = 16u * local_quadrant * pass.count + place;
+    __global const float16* own_roots = roots + quadrant_slots(quadrant) / 16u;
+    Color_16 drawn_control = {0.0f, 0.0f, 0.0f};  // of what is drawn, over how often it is
     if (lanes_16(valid)) {
-        weigh_nodes(&w, nodes, lights, cut_nodes + tile * CUT_CAPACITY, cut_sizes[tile],
-                    roots + quadrant_slots(quadrant) / 16u, &points, valid, budget.samples);
+        weigh_nodes(&w, nodes, lights, cut_nodes + tile * CUT_CAPACITY, cut_sizes[tile], own_roots,
+                    &points, valid, budget.samples);
         const float16 scale = find_scale(&w, find_samples(&w, budget));
         for (uint i = 0u; i < w.size; ++i) {
             const uint entry = w.entries[i];
@@ -244,14 +304,41 @@ KERNEL void adaptive_draw(Tiles tiles, Camera camera, Pass pass, Budget budget,
             const float16 reached = position + share;
             const float16 times = floor(reached);
             position = reached - times;
-            for (uint cells = lanes_16(times > 0.0f); cells; cells &= cells - 1u) {
-                const uint cell = lowest(cells);
-                const uint first =
-                    first_draw(pass, (16u * local_quadrant + cell) * pass.count + place);
-                for (float j = LANE(times, cell); j > 0.0f && counts[cell] < capacity; j -= 1.0f) {
-                    const uint at = first + counts[cell]++;
-                    drawn[at] = entry;
-                    shares[at] = LANE(share, cell);
+            uint cells = lanes_16(times > 0.0f);
+            if (!cells) continue;
+            const float16 root = own_roots[DRAWN_SLOT(entry)];
+            const float16 factor = root * root * times / max(share, 1e-30f);
+            add_color(&drawn_control, node_estimate_16(nodes + DRAWN_NODE(entry), lights, &points),
+                      select((float16)(0.0f), factor, times > 0.0f));
+            const uint node = DRAWN_NODE(entry);
+            const bool single = nodes[node].count == 1u;
+            const uint mark = (entry & ~SINGLE_POINT) | (single ? AIMED : 0u);
+            for (float16 left = times; cells; cells = lanes_16(left > 0.0f)) {
+                left -= 1.0f;
+                Direct_16 d;
+                uint lit = 0u;
+                if (single) {
+                    float16 u = (float16)(0.5f), v = u;
+                    if (!(entry & SINGLE_POINT))
+                        random_points(pixels, pixel_sample, RANDOM_DRAWS * pass.number + counts,
+                                      seed, &u, &v);
+                    d = direct_16(lights + nodes[node].first, nodes[node].kind, &points, &from, u,
+                                  v);
+                    lit = lanes_16(d.value.red + d.value.green + d.value.blue > 0.0f);
+                    const float16 inverse = 1.0f / max(share, 1e-30f);
+                    d.value.red *= inverse;
+                    d.value.green *= inverse;
+                    d.value.blue *= inverse;
+                }
+                for (; cells; cells &= cells - 1u) {
+                    const uint cell = lowest(cells);
+                    const uint p = first_pixel + cell * pass.count;
+                    const uint i = UINT_LANE(counts, cell);
+                    if (i == capacity) continue;
+                    UINT_LANE(counts, cell) = i + 1u;
+                    drawn[capacity * p + i] = mark;
+                    shares[capacity * p + i] = LANE(share, cell);
+                    if (lit >> cell & 1u) put_sample(rays, values, capacity * p + i, &d, cell);
                 }
             }
         }
@@ -260,9 +347,12 @@ KERNEL void adaptive_draw(Tiles tiles, Camera camera, Pass pass, Budget budget,
     expect(&w, &variance, &brightness);
     for (uint cell = 0u; cell < 16u; ++cell) {
         const uint p = (16u * local_quadrant + cell) * pass.count + place;
-        if (counts[cell] < capacity) drawn[first_draw(pass, p) + counts[cell]] = NO_DRAW;
-        base[p] = CONTROL * (float4)(LANE(w.control.red, cell), LANE(w.control.green, cell),
-                                     LANE(w.control.blue, cell), 0.0f);
+        const uint count = UINT_LANE(counts, cell);
+        if (count < capacity) drawn[first_draw(pass, p) + count] = NO_DRAW;
+        base[p] =
+            CONTROL * (float4)(LANE(w.control.red, cell) - LANE(drawn_control.red, cell),
+                               LANE(w.control.green, cell) - LANE(drawn_control.green, cell),
+                               LANE(w.control.blue, cell) - LANE(drawn_control.blue, cell), 0.0f);
         const Expectation e = {LANE(variance, cell), LANE(brightness, cell)};
         expectations[(16u * quadrant + cell) * pass.count + place] = e;
     }
@@ -295,64 +385,49 @@ static Descent descend(__global const LightNode* nodes, __global const Light* li
     return d;
 }
 
-// Draws a light for each drawn node, and its ray: draw i of pixel p is lane i % 16 of packet
-// pass.packets * p + i / 16; values as in lib/samples.h. Takes from the base what the drawn nodes'
-// control variates are. One pixel of the pass per work-item.
+// Draws a light for each drawn node of several, and its ray: draw i of pixel p is lane i % 16 of
+// packet pass.packets * p + i / 16; values as in lib/samples.h. One pixel of the pass per
+// work-item.
 KERNEL void adaptive_aim(Tiles tiles, Camera camera, Pass pass, __global const Surface* surfaces,
                          __global const Material* materials, __global const Light* lights,
-                         __global const LightNode* nodes, __global const float* roots,
-                         uint pixel_sample, uint seed, __global const uint* drawn,
-                         __global const float* shares, __global float4* base,
-                         __global float4* origins, __global float* rays, __global float* values) {
+                         __global const LightNode* nodes, uint pixel_sample, uint seed,
+                         __global const uint* drawn, __global const float* shares,
+                         __global float* rays, __global float* values) {
     const uint p = get_global_id(0);
     if (p >= pass_pixels(pass)) return;
     const uint capacity = 16u * pass.packets;
     __global const uint* own_draws = drawn + first_draw(pass, p);
-    __global const float* own_shares = shares + first_draw(pass, p);
-    const uint first_packet = pass.packets * p;
-    for (uint k = 0u; k < pass.packets; ++k) clear_packet(rays, first_packet + k);
-    if (own_draws[0] != NO_DRAW) {
-        const uint item = pass_item(pass, p);
-        const Receiver receiver = make_receiver(surfaces + item, materials, camera);
-        const Points_1 point = point_of(&receiver);
-        const uint2 pixel = item_pixel(tiles, item);
-        const uint cell = item / 16u;
-        __global const float* own_roots = roots + quadrant_slots(cell / 16u) + cell % 16u;
-        float4 control = base[p];
-        uint first = 0u;  // of the draws of the same node
-        uint same = 0u;   // their number
-        for (uint i = 0u; i < capacity && own_draws[i] != NO_DRAW; ++i) {
-            const uint entry = own_draws[i];
-            const float share = own_shares[i];
-            if (i == first + same) {
-                first = i;
-                for (same = 1u; first + same < capacity; ++same)
-                    if (own_draws[first + same] != entry) break;
-            }
-            const float root = own_roots[16u * DRAWN_SLOT(entry)];
-            const Color_1 c = node_estimate_1(nodes + DRAWN_NODE(entry), lights, &point);
-            control.xyz -= (CONTROL * root * root / share) * (float3)(c.red, c.green, c.blue);
-            const uint packet = first_packet + i / 16u;
-            const uint lane = i % 16u;
-            const uint4 bits = random_bits(pixel.y * tiles.width + pixel.x, pixel_sample,
-                                           RANDOM_DRAWS * pass.number + i, seed);
-            const float u = ((float)(i - first) + unit_float(bits.x)) / (float)same;
-            const Descent d = descend(nodes, lights, &point, DRAWN_NODE(entry), u, bits.w);
-            if (d.probability == 0.0f) continue;
-            Ray shadow;
-            const float2 on_light = (float2)(unit_float(bits.y), unit_float(bits.z));
-            const float3 value = unshadowed(&receiver, lights + d.light, on_light, &shadow) /
-                                 (share * d.probability);
-            if (!any(value != 0.0f)) continue;
-            put_ray(rays, packet, lane, shadow);
-            __global float* lanes = values + 48 * (ulong)packet + lane;
-            lanes[0] = value.x;
-            lanes[16] = value.y;
-            lanes[32] = value.z;
+    if (own_draws[0] == NO_DRAW) return;
+    const uint item = pass_item(pass, p);
+    const Receiver receiver = make_receiver(surfaces + item, materials, camera);
+    const Points_1 point = point_of(&receiver);
+    const uint2 pixel = item_pixel(tiles, item);
+    uint first = 0u;  // of the draws of the same node
+    uint same = 0u;   // their number
+    for (uint i = 0u; i < capacity && own_draws[i] != NO_DRAW; ++i) {
+        const uint entry = own_draws[i];
+        if (entry & AIMED) continue;
+        if (i >= first + same) {
+            first = i;
+            for (same = 1u; first + same < capacity; ++same)
+                if (own_draws[first + same] != entry) break;
         }
-        for (uint k = 0u; k < pass.packets; ++k)
-            origins[first_packet + k] = (float4)(shadow_origin(&receiver), 0.0f);
-        base[p] = control;
+        const uint4 bits = random_bits(pixel.y * tiles.width + pixel.x, pixel_sample,
+                                       RANDOM_DRAWS * pass.number + i, seed);
+        const float u = ((float)(i - first) + unit_float(bits.x)) / (float)same;
+        const Descent d = descend(nodes, lights, &point, DRAWN_NODE(entry), u, bits.w);
+        if (d.probability == 0.0f) continue;
+        Ray shadow;
+        const float2 on_light = (float2)(unit_float(bits.y), unit_float(bits.z));
+        const float3 value = unshadowed(&receiver, lights + d.light, on_light, &shadow) /
+                             (shares[first_draw(pass, p) + i] * d.probability);
+        if (!any(value != 0.0f)) continue;
+        const ulong packet = pass.packets * p + i / 16u;
+        put_ray(rays, packet, i % 16u, shadow);
+        __global float* lanes = values + 48 * packet + i % 16u;
+        lanes[0] = value.x;
+        lanes[16] = value.y;
+        lanes[32] = value.z;
     }
 }
 
