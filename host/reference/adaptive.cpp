@@ -318,9 +318,6 @@ std::vector<PixelDraws> draw_nodes(const LightTree& tree, const Scene& scene, co
         }
         ++splits;
         const Entry children[] = {{e.slot, e.node + 1}, {e.slot, right_child(tree, e.node)}};
-        for (std::size_t i = 0; i < pixels.size(); ++i)
-            sums[i] += weight_of(children[0], pixels[i]) + weight_of(children[1], pixels[i]) -
-                       weight_of(e, pixels[i]);
         list[at] = children[0];
         list.insert(list.begin() + static_cast<std::ptrdiff_t>(at) + 1, children[1]);
     }

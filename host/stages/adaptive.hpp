@@ -47,7 +47,6 @@ class AdaptiveStage {
 
   private:
     Arguments scene_;
-    bool groups_;  // whether nodes may hold several lights
     ShadowStage shadows_;
     Kernel draw_;
     Kernel aim_;

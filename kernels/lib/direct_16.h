@@ -40,18 +40,14 @@ static Direct_16 direct_16(__global const Light* light, uint kind, const Points_
         tx = (float16)(position.x);
         ty = (float16)(position.y);
         tz = (float16)(position.z);
-        float3 normal = light->axis.xyz;  // where there is one
-        float scale = 1.0f;
 #if HAS_TRIANGLE || HAS_QUAD
         if (kind == LIGHT_TRIANGLE || kind == LIGHT_QUAD) {
             const float3 axis = light->axis.xyz;
             const float3 edge = light->edge.xyz;
-            normal = cross(axis, edge);
             if (kind == LIGHT_TRIANGLE) {
                 const int16 beyond = u + v > 1.0f;
                 u = select(u, 1.0f - u, beyond);
                 v = select(v, 1.0f - v, beyond);
-                scale = 0.5f;
             }
             tx += axis.x * u + edge.x * v;
             ty += axis.y * u + edge.y * v;
@@ -75,8 +71,9 @@ static Direct_16 direct_16(__global const Light* light, uint kind, const Points_
                     emitted *= clamp(1.0f - ratio * ratio, 0.0f, 1.0f);
                 }
                 if (kind == LIGHT_SPOT) {
-                    const float16 cosine = -dot3_16(wx, wy, wz, (float16)(normal.x),
-                                                    (float16)(normal.y), (float16)(normal.z));
+                    const float3 a = light->axis.xyz;
+                    const float16 cosine =
+                        -dot3_16(wx, wy, wz, (float16)(a.x), (float16)(a.y), (float16)(a.z));
                     const float16 cone = clamp(cosine * light->edge.x + light->edge.y, 0.0f, 1.0f);
                     emitted *= cone * cone;
                 }
@@ -84,17 +81,19 @@ static Direct_16 direct_16(__global const Light* light, uint kind, const Points_
             }
 #endif
 #if HAS_ORIENTED || HAS_TRIANGLE || HAS_QUAD
-            default: {
-                const float16 cosine = -dot3_16(wx, wy, wz, (float16)(normal.x),
-                                                (float16)(normal.y), (float16)(normal.z));
+            default: {  // cosines; an area's normal is as long as the parallelogram is large
+                const float3 axis = light->axis.xyz;
+                const float3 n = kind == LIGHT_ORIENTED ? axis : cross(axis, light->edge.xyz);
+                const float16 cosine =
+                    -dot3_16(wx, wy, wz, (float16)(n.x), (float16)(n.y), (float16)(n.z));
                 const bool both = kind != LIGHT_ORIENTED && light->axis.w != 0.0f;
-                const float16 facing = both ? fabs(cosine) : max(cosine, zero);
-                emitted *= scale * facing;
-                const float offset = light->edge.w / length(normal);
+                const float share = kind == LIGHT_TRIANGLE ? 0.5f : 1.0f;
+                emitted *= share * (both ? fabs(cosine) : max(cosine, zero));
+                const float offset = light->edge.w / length(n);
                 const float16 side = select((float16)(offset), (float16)(-offset), cosine < 0.0f);
-                tx += normal.x * side;
-                ty += normal.y * side;
-                tz += normal.z * side;
+                tx += n.x * side;
+                ty += n.y * side;
+                tz += n.z * side;
             }
 #endif
         }

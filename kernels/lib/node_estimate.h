@@ -34,9 +34,12 @@ static REAL NAMED(dot3)(REAL ax, REAL ay, REAL az, REAL bx, REAL by, REAL bz) {
     return fma(ax, bx, fma(ay, by, az * bz));
 }
 
-// (k + sqrt(k^2 + v)) / 2: max(k, 0), smoothed over sqrt(v). At least 0.19 v, which it never falls
-// below for k in [-1, 1] and v up to 4/3, but by rounding.
-static REAL NAMED(soft)(REAL k, REAL v) { return max(0.5f * (k + sqrt(fma(k, k, v))), 0.19f * v); }
+// (k + sqrt(k^2 + v)) / 2: max(k, 0), smoothed over sqrt(v); positive where v is, whatever the
+// rounding.
+static REAL NAMED(soft)(REAL k, REAL v) {
+    const REAL t = 0.5f * (fabs(k) + sqrt(fma(k, k, v)));
+    return WHERE(k >= 0.0f, t, 0.25f * v / max(t, (REAL)(1e-30f)));
+}
 
 // The lights' part: their intensity's factor and the unit direction to their centre. 0 where none
 // of them can be above the surface.

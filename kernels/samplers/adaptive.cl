@@ -106,16 +106,18 @@ static void add_color(Color_16* sum, Color_16 c, float16 factor) {
     sum->blue = fma(c.blue, factor, sum->blue);
 }
 
-// A node's weight: its contribution's luminance x sqrt(V^). Adds to the sums, or takes away.
-static float16 weigh(Weights* w, __global const LightNode* node, __global const Light* lights,
-                     const Points_16* points, float16 root, float sign) {
-    const Color_16 c = node_estimate_16(node, lights, points);
-    const float16 visibility = sign * root * root;
-    add_color(&w->control, c, visibility);
-    const float16 value = color_luminance_16(c) * root;
-    w->sum = fma(value, sign, w->sum);
-    w->visible_sum = fma(value, visibility, w->visible_sum);
-    return value;
+// A node's contribution and its weight: the contribution's luminance x sqrt(V^).
+typedef struct Weighed {
+    Color_16 color;
+    float16 weight;
+} Weighed;
+
+static Weighed weigh(__global const LightNode* node, __global const Light* lights,
+                     const Points_16* points, float16 root) {
+    Weighed w;
+    w.color = node_estimate_16(node, lights, points);
+    w.weight = color_luminance_16(w.color) * root;
+    return w;
 }
 
 // Whether any pixel wants the node's children: where its lights lie close, its estimate is coarse.
@@ -129,43 +131,44 @@ static bool wants_children(__global const LightNode* node, const Points_16* p, f
     return lanes_16(weight * near > limit) != 0u;
 }
 
-// The weights of a cut's nodes; what is close to a pixel is refined. The first MOST_SPLITS places
-// stay free at first, so that the second pass can write what it reads.
+// The weights of a cut's nodes; what is close to a pixel is refined.
 static void weigh_nodes(Weights* w, __global const LightNode* nodes, __global const Light* lights,
                         __global const uint* cut, uint cut_size, __global const float16* roots,
                         const Points_16* points, int16 valid, float samples) {
     const float16 zero = (float16)(0.0f);
-    w->sum = w->visible_sum = zero;
-    w->control.red = w->control.green = w->control.blue = zero;
+    Weighed cut_weights[CUT_CAPACITY];
+    float16 cut_sum = zero;
     for (uint slot = 0u; slot < cut_size; ++slot) {
         const float16 root = select(zero, roots[slot], valid);
-        w->values[MOST_SPLITS + slot] = weigh(w, nodes + cut[slot], lights, points, root, 1.0f);
+        cut_weights[slot] = weigh(nodes + cut[slot], lights, points, root);
+        cut_sum += cut_weights[slot].weight;
     }
-    uint splits = 0u;
-    w->size = 0u;
+    const float16 limit = cut_sum * (REFINED_SHARE / samples);
     uint stack[MOST_SPLITS + 1u];
-    float16 stack_values[MOST_SPLITS + 1u];
+    Weighed stack_weights[MOST_SPLITS + 1u];
+    uint splits = 0u;
     for (uint slot = 0u; slot < cut_size; ++slot) {
         const float16 root = select(zero, roots[slot], valid);
         stack[0] = cut[slot];
-        stack_values[0] = w->values[MOST_SPLITS + slot];
+        stack_weights[0] = cut_weights[slot];
         for (uint top = 1u; top > 0u;) {
             const uint node = stack[--top];
-            const float16 value = stack_values[top];
-            const uint children = nodes[node].count > 1u ? 2u : 0u;
-            if (children && splits < MOST_SPLITS &&
-                wants_children(nodes + node, points, value, w->sum * (REFINED_SHARE / samples))) {
+            const Weighed own = stack_weights[top];
+            if (nodes[node].count > 1u && splits < MOST_SPLITS &&
+                wants_children(nodes + node, points, own.weight, limit)) {
                 ++splits;
-                weigh(w, nodes + node, lights, points, root, -1.0f);
                 const uint right = node + 2u * nodes[node + 1u].count;
                 for (uint child = 0u; child < 2u; ++child) {  // the left one ends on top
                     const uint at = child == 0u ? right : node + 1u;
                     stack[top] = at;
-                    stack_values[top++] = weigh(w, nodes + at, lights, points, root, 1.0f);
+                    stack_weights[top++] = weigh(nodes + at, lights, points, root);
                 }
                 continue;
             }
-            w->values[w->size] = value;
+            add_color(&w->control, own.color, root * root);
+            w->sum += own.weight;
+            w->visible_sum = fma(own.weight, root * root, w->visible_sum);
+            w->values[w->size] = own.weight;
             w->entries[w->size++] = node_entry(nodes, node, slot);
         }
     }
