@@ -1,18 +1,37 @@
 // SPDX-License-Identifier: MIT
 // Stage accumulate: adds one sample of each pixel to the image.
+#include "lib/cells.h"
 #include "lib/sum.h"
-#include "lib/tiles.h"
 #include "shared/material.h"
 #include "shared/surface.h"
 
-// image[y * width + x] += estimates[item], to whose rgb the surface's emission is added, cd/m2.
-// residuals[y * width + x] belongs to the sum (lib/sum.h).
-KERNEL void accumulate_add(Tiles tiles, __global const float4* estimates,
+// image[y * width + x].rgb += weight x (estimates[item] + the surface's emission), cd/m2; .w +=
+// shadow rays. residuals[] belongs to the sum (lib/sum.h), weights[] is the sum of the weights.
+// HAS_PAIRS: samples 2 k and 2 k + 1 of a pixel are a pair, of equal weight: differences[] is the
+// sum of weight x (first - second), in w the weight of all pairs; pending[] the first one until the
+// second comes (`odd`).
 #if HAS_EMISSION
-                           __global const Surface* surfaces, __global const Material* materials,
+#define EMISSION_PARAMETERS \
+    , __global const Surface *surfaces, __global const Material *materials
+#define EMISSION_ARGUMENTS , surfaces, materials
+#else
+#define EMISSION_PARAMETERS
+#define EMISSION_ARGUMENTS
 #endif
-                           __global float4* image, __global float4* residuals) {
-    const uint item = get_global_id(0);
+#if HAS_PAIRS
+#define PAIR_PARAMETERS , uint odd, __global float4 *pending, __global float4 *differences
+#define PAIR_ARGUMENTS , odd, pending, differences
+#else
+#define PAIR_PARAMETERS
+#define PAIR_ARGUMENTS
+#endif
+#define IMAGE_PARAMETERS                                                                        \
+    __global const float4 *estimates EMISSION_PARAMETERS, float weight, __global float4 *image, \
+        __global float4 *residuals, __global float *weights PAIR_PARAMETERS
+#define IMAGE_ARGUMENTS \
+    estimates EMISSION_ARGUMENTS, weight, image, residuals, weights PAIR_ARGUMENTS
+
+static void add_sample(Tiles tiles, uint item, IMAGE_PARAMETERS) {
     if (!item_in_image(tiles, item)) return;
     const uint2 position = item_pixel(tiles, item);
     const uint pixel = position.y * tiles.width + position.x;
@@ -24,9 +43,29 @@ KERNEL void accumulate_add(Tiles tiles, __global const float4* estimates,
         if (surface->front || emission.w != 0.0f) term.xyz += emission.xyz;
     }
 #endif
+    term.xyz *= weight;
     float4 sum = image[pixel];
     float4 residual = residuals[pixel];
     add_compensated(&sum, &residual, term);
     image[pixel] = sum;
     residuals[pixel] = residual;
+    weights[pixel] += weight;
+#if HAS_PAIRS
+    if (odd)
+        differences[pixel] += (float4)(pending[pixel].xyz - term.xyz, 2.0f * weight);
+    else
+        pending[pixel] = term;
+#endif
+}
+
+// A sample of every pixel of the tiles.
+KERNEL void accumulate_add(Tiles tiles, IMAGE_PARAMETERS) {
+    if (get_global_id(0) < tiles.count * tiles.size * tiles.size)
+        add_sample(tiles, get_global_id(0), IMAGE_ARGUMENTS);
+}
+
+// Of the pixels of a pass.
+KERNEL void accumulate_add_pass(Tiles tiles, Pass pass, IMAGE_PARAMETERS) {
+    if (get_global_id(0) < pass_pixels(pass))
+        add_sample(tiles, pass_item(pass, get_global_id(0)), IMAGE_ARGUMENTS);
 }

@@ -72,6 +72,22 @@ class CommandTest(unittest.TestCase):
         self.assertLess(sum(v for k, v in stats["seconds"].items() if k != "total"),
                         stats["seconds"]["total"] * 1.02)
 
+    def test_stops_where_the_error_is_small_enough(self):
+        run = self.run_program("render", self.cornell, "--height", 32, "--target-error", 0.01,
+                               "--aov", "error", "-o", "a.exr", "--stats", "s.json")
+        stats = json.loads((self.folder / "s.json").read_text())
+        self.assertIn("estimated relMSE", run.stdout)
+        self.assertLessEqual(stats["error"]["relmse"], 0.01)
+        self.assertGreater(stats["error"]["standard_error"], 0)
+        run = self.run_program("render", self.cornell, "--height", 32, "--target-error", 1e-9,
+                               "--spp", 4, "-o", "a.exr")
+        self.assertIn("--target-error 1e-09: not reached", run.stderr)
+
+    def test_stops_in_time(self):
+        self.run_program("render", self.cornell, "--height", 32, "--time", 0.2, "-o", "a.exr",
+                         "--stats", "s.json")
+        self.assertGreaterEqual(json.loads((self.folder / "s.json").read_text())["spp"], 1)
+
     def test_quiet_prints_nothing(self):
         run = self.run_program("render", self.cornell, "--height", 8, "-q")
         self.assertEqual(run.stdout + run.stderr, "")
@@ -134,6 +150,11 @@ class CommandTest(unittest.TestCase):
                 (["--tile-size", 33], ["--tile-size", "33"]),
                 (["--max-depth", 8], ["--max-depth", "8"]),
                 (["--visibility-threshold", 1.5], ["--visibility-threshold", "1.5"]),
+                (["--time", 0], ["--time", "0"]),
+                (["--time", "soon"], ["--time", "soon"]),
+                (["--target-error", "small"], ["--target-error", "small"]),
+                (["--target-error", 0.1, "--spp", 1], ["--spp 1", "pairs"]),
+                (["--aov", "error", "--spp", 1], ["--spp 1", "pairs"]),
                 (["--aov", "smell"], ["--aov", "smell"]),
                 (["--aov", "cluster", "--sampler", "power"], ["--aov", "cluster", "power"]),
                 (["--exposure", "bright"], ["--exposure", "bright"]),

@@ -167,6 +167,31 @@ TEST(statistics, cuts_of_many_lights_are_unbiased) {
     }
 }
 
+// However rendering stops: where the error is small enough, and in the middle of a sample where
+// time is over.
+TEST(statistics, stopped_renders_are_unbiased) {
+    FOR_EACH_DEVICE(device) {
+        const test::TestScene scene = small("points");
+        const Moments reference = render_seeds(device, scene, options_for("exhaustive", 1), 1);
+        RenderOptions options = options_for("adaptive", 0);
+        options.spp = 64;
+        options.target_error = 0.002;
+        const Statistics by_error =
+            judge(render_seeds(device, scene, options, 200), reference, scene);
+        EXPECT_GT(by_error.smallest_pixel, significance);
+        EXPECT_GT(by_error.mean, significance);
+        options.target_error = 0;
+        Moments by_time;
+        for (options.seed = 0; options.seed < 200; ++options.seed) {
+            options.deadline = Clock::now() + std::chrono::milliseconds(8 + options.seed % 8);
+            by_time.add(luminances(test::render(device, scene, options).image));
+        }
+        const Statistics s = judge(by_time, reference, scene);
+        EXPECT_GT(s.smallest_pixel, significance);
+        EXPECT_GT(s.mean, significance);
+    }
+}
+
 // The same test sees the bias of the sampler that the table calls biased, and that it loses energy.
 TEST(statistics, the_papers_sampler_is_biased) {
     FOR_EACH_DEVICE(device) {

@@ -26,6 +26,8 @@ struct RenderArguments {
     SceneArguments scene;
     std::string sampler = "auto";
     RenderOptions options;  // but for the sampler
+    std::optional<uint> spp;
+    double seconds = 0;  // to render in, from the program's start; 0: as long as it takes
     std::vector<std::string> outputs;
     std::optional<float> exposure;  // stops over the scene's units; otherwise automatic
     std::string cluster_map;        // .png

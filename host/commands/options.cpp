@@ -66,6 +66,7 @@ const CLI::Validator power_of_two(
     "");
 
 constexpr std::uint64_t largest_uint = 4294967295;
+constexpr uint most_spp = 1 << 20;
 
 // What a command that renders a scene needs beside its file.
 void add_view(CLI::App& command, SceneArguments& scene) {
@@ -145,12 +146,23 @@ void add_render(CLI::App& app, std::function<int()>& run) {
                      "name with .png, here)")
         ->allow_extra_args(false);
     command->add_option("--sampler", arguments->sampler, "see below")->capture_default_str();
-    command->add_option("--light-samples", o.light_samples, "light samples per pixel sample")
-        ->check(whole(1, 65536))
-        ->capture_default_str();
-    command->add_option("--spp", o.spp, "pixel samples; 1: at the pixel's centre")
-        ->check(whole(1, 1 << 20))
-        ->capture_default_str();
+    command
+        ->add_option("--light-samples", o.light_samples,
+                     "light samples per pixel sample (default: 4 in the first four, then 16)")
+        ->check(whole(1, 65536));
+    command
+        ->add_option("--spp", arguments->spp,
+                     "pixel samples, at most; 1: at the pixel's centre (default: 4, or what --time "
+                     "and --target-error allow)")
+        ->check(whole(1, most_spp));
+    command
+        ->add_option("--time", arguments->seconds,
+                     "seconds to render in, all work from start to written files counted")
+        ->check(number(0.001, 1e9));
+    command
+        ->add_option("--target-error", o.target_error,
+                     "render until the estimated relMSE is no more than this")
+        ->check(number(1e-12, 1e12));
     command->add_option("--seed", o.seed, "same seed, same image")
         ->check(whole(0, largest_uint))
         ->capture_default_str();
@@ -176,10 +188,15 @@ void add_render(CLI::App& app, std::function<int()>& run) {
                     "\nExamples:\n"
                     "  manylight render scene.glb\n"
                     "  manylight render scene.glb -o a.exr -o a.png --spp 16 --light-samples 8\n"
+                    "  manylight render scene.glb --time 10\n"
+                    "  manylight render scene.glb --target-error 0.001 --aov error -o a.exr\n"
                     "  manylight render scene.glb --sampler exhaustive -o reference.exr\n"
                     "  manylight render scene.glb --cluster-map clusters.png --stats stats.json\n");
     command->callback([&run, arguments] {
         if (arguments->sampler != "auto") (void)find_sampler(arguments->sampler);
+        RenderOptions& o = arguments->options;
+        const bool open_ended = arguments->seconds > 0 || o.target_error > 0;
+        o.spp = arguments->spp.value_or(open_ended ? most_spp : o.spp);
         for (const std::string& name : arguments->options.aovs)
             if (std::ranges::none_of(all_aovs(), [&](const Aov& a) { return a.name == name; }))
                 throw CLI::ValidationError("--aov", "there is no layer " + name);

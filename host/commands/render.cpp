@@ -66,14 +66,15 @@ void print_plan(const LoadedScene& loaded, const Plan& plan, const DeviceInfo& d
 }
 
 // All parameters that the image depends on.
-json make_parameters(const RenderOptions& o, const LoadedScene& loaded, uint light_samples) {
+json make_parameters(const RenderOptions& o, const LoadedScene& loaded, const FrameResult& result) {
     return {
         {"scene", loaded.scene.file},
         {"camera", loaded.view.name},
         {"emitter_points", loaded.emitter_points},
         {"sampler", o.sampler},
-        {"light_samples", light_samples},
-        {"spp", o.spp},
+        {"light_samples", result.light_samples},
+        {"later_light_samples", result.later_light_samples},
+        {"spp", result.spp},
         {"seed", o.seed},
         {"pixel_centre", !o.jitters()},
         {"hide_emitters", o.hide_emitters},
@@ -103,6 +104,9 @@ json make_stats(json parameters, const LoadedScene& loaded, const Plan& plan,
     stats["seconds"] = {{"compile", device.compile_seconds()},
                         {"prepare", result.prepare_seconds},
                         {"render", result.render_seconds}};
+    if (result.error)
+        stats["error"] = {{"relmse", result.error->relmse},
+                          {"standard_error", result.error->standard_error}};
     const std::map<std::string, double> stages = device.stage_seconds();
     stats["stage_seconds"] = stages;
     const auto shadows = stages.find("shadows");
@@ -162,6 +166,38 @@ void write_files(const RenderArguments& arguments, const std::vector<std::string
     }
 }
 
+// When rendering has to end for everything to be written in time.
+Clock::time_point deadline_of(Clock::time_point start, const RenderArguments& arguments,
+                              const std::vector<std::string>& images, const LoadedScene& loaded) {
+    // Seconds that encoding a pixel takes.
+    constexpr double exr = 60e-9;
+    constexpr double png = 60e-9;
+    const double pixels = static_cast<double>(loaded.width) * loaded.height;
+    double writing = 0.01;
+    for (const std::string& image : images)
+        writing += pixels * (image.ends_with(".exr")
+                                 ? exr * static_cast<double>(1 + arguments.options.aovs.size())
+                                 : png);
+    return start + std::chrono::duration_cast<Clock::duration>(
+                       std::chrono::duration<double>(arguments.seconds - writing));
+}
+
+void print_summary(const RenderOptions& options, const FrameResult& result, double seconds) {
+    const std::string later = result.later_light_samples == result.light_samples
+                                  ? ""
+                                  : fmt::format(", later {}", result.later_light_samples);
+    fmt::print(
+        "{}, {} light samples{}, {:.4g} spp, {} x {}: {:.2f} s (prepare {:.2f}, render "
+        "{:.2f})\n",
+        options.sampler, result.light_samples, later, result.spp, options.width, options.height,
+        seconds, result.prepare_seconds, result.render_seconds);
+    if (!result.error) return;
+    fmt::print("estimated relMSE {:.3g} +- {:.2g} (95%)\n", result.error->relmse,
+               1.96 * result.error->standard_error);
+    if (options.target_error > 0 && result.error->relmse > options.target_error)
+        fmt::print(stderr, "warning: --target-error {}: not reached\n", options.target_error);
+}
+
 }  // namespace
 
 int run_render(const RenderArguments& arguments) {
@@ -186,7 +222,7 @@ int run_render(const RenderArguments& arguments) {
     options.sampler = arguments.sampler;
     if (arguments.sampler == "auto") {
         const SamplerChoice choice = choose_sampler(loaded.scene.lights.size(),
-                                                    options.light_samples, asks_clusters(options));
+                                                    options.samples_of(0), asks_clusters(options));
         options.sampler = choice.name;
         if (!arguments.quiet) fmt::print("sampler {}: {}\n", choice.name, choice.reason);
     }
@@ -198,6 +234,7 @@ int run_render(const RenderArguments& arguments) {
     const WideBvh bvh =
         build_wide_bvh(loaded.scene, lanes, lanes, reach_of(loaded.scene, loaded.camera));
     const double build_seconds = seconds_since(build_start);
+    if (arguments.seconds > 0) options.deadline = deadline_of(start, arguments, images, loaded);
     Frame frame(device, loaded.scene, bvh, loaded.camera, options);
     if (!arguments.quiet) print_plan(loaded, frame.plan(), device.info());
     frame.prepare();
@@ -207,17 +244,14 @@ int run_render(const RenderArguments& arguments) {
     }();
     warn_if_not_finite(result.image);
 
-    const json parameters = make_parameters(options, loaded, result.light_samples);
+    const json parameters = make_parameters(options, loaded, result);
     json stats = make_stats(parameters, loaded, frame.plan(), result, device);
     stats["seconds"]["load"] = load_seconds;
     stats["seconds"]["build"] = build_seconds;
     stats["seconds"]["total"] = seconds_since(start);
     write_files(arguments, images, result, stats, make_metadata(parameters, stats));
     if (!arguments.quiet) {
-        fmt::print(
-            "{}, {} light samples, {} spp, {} x {}: {:.2f} s (prepare {:.2f}, render {:.2f})\n",
-            options.sampler, result.light_samples, options.spp, options.width, options.height,
-            seconds_since(start), result.prepare_seconds, result.render_seconds);
+        print_summary(options, result, seconds_since(start));
         for (const auto& [option, path] : files_of(arguments, images))
             fmt::print("wrote {}\n", path);
     }

@@ -25,16 +25,15 @@ std::size_t packets_per_pixel(uint light_samples) {
 }  // namespace
 
 Adaptive::Adaptive(Device& device, const DeviceScene& scene, unsigned most_tiles, unsigned width,
-                   uint light_samples)
+                   uint most_light_samples)
     : cut_stage_(device, scene),
       visibility_stage_(device, scene),
-      adaptive_stage_(device, scene, packets_for(most_tiles, light_samples),
+      adaptive_stage_(device, scene, packets_for(most_tiles, most_light_samples),
                       std::size_t{most_tiles} * CELLS_PER_TILE * most_places),
       cuts_(device, most_tiles),
       visibility_(device, most_tiles),
       light_count_(scene.light_count),
-      width_(width),
-      light_samples_(light_samples) {}
+      width_(width) {}
 
 void Adaptive::start(const Tiles& tiles, const Buffer<Surface>& surfaces, uint seed) {
     const CutOptions options{CUT_CAPACITY, width_ >= wide_image ? 1u : 4u, seed};
@@ -45,45 +44,48 @@ void Adaptive::start(const Tiles& tiles, const Buffer<Surface>& surfaces, uint s
     factor_ = 0;
 }
 
-void Adaptive::draw(const Tiles& tiles, const PixelSample& sample, const Buffer<Surface>& surfaces,
-                    Estimates& estimates, const std::function<void(std::size_t)>& progress) {
+void Adaptive::draw(const Tiles& tiles, const PixelSample& sample, uint light_samples,
+                    const Buffer<Surface>& surfaces, Estimates& estimates,
+                    const std::function<bool(const Pass&)>& done) {
     // The first pixels were drawn from next to no knowledge: they are drawn once more, afresh.
-    const std::vector<Pass> first_passes = {{0, 1, 0, 0, 0, 0},
-                                            {1, 3, 0, 0, 0, 0},
-                                            {4, 4, 0, 0, 0, 0},
-                                            {8, 8, 0, 0, 0, 0},
-                                            {0, 1, 1, 0, 0, 0}};
+    const Pass trial = {0, 1, 0, 0, 0, 0};
+    const std::vector<Pass> first_passes = {
+        {1, 3, 0, 0, 0, 0}, {4, 4, 0, 0, 0, 0}, {8, 8, 0, 0, 0, 0}, {0, 1, 1, 0, 0, 0}};
     const std::vector<Pass> passes = {{0, 8, 0, 0, 0, 0}, {8, 8, 0, 0, 0, 0}};
-    const uint rounds = rounds_for(light_samples_);
-    const float samples = samples_of_round(light_samples_);
-    for (uint round = 0; round < rounds; ++round) {
-        for (Pass pass : fresh_ ? first_passes : passes) {
-            pass.number += 2 * round;
-            pass_over(tiles, pass, sample, samples, surfaces, 1.f / static_cast<float>(rounds),
-                      round == 0, estimates, progress);
-        }
-        fresh_ = false;
-    }
+    if (fresh_)
+        pass_over(tiles, trial, sample, light_samples, surfaces, estimates,
+                  [](const Pass&) { return true; });
+    for (const Pass& pass : fresh_ ? first_passes : passes)
+        if (!pass_over(tiles, pass, sample, light_samples, surfaces, estimates, done)) return;
+    fresh_ = false;
 }
 
-void Adaptive::pass_over(const Tiles& tiles, Pass pass, const PixelSample& sample, float samples,
-                         const Buffer<Surface>& surfaces, float weight, bool start,
-                         Estimates& estimates, const std::function<void(std::size_t)>& progress) {
-    pass.packets = static_cast<uint>(packets_per_pixel(light_samples_));
+// Returns whether to go on.
+bool Adaptive::pass_over(const Tiles& tiles, Pass pass, const PixelSample& sample,
+                         uint light_samples, const Buffer<Surface>& surfaces, Estimates& estimates,
+                         const std::function<bool(const Pass&)>& done) {
+    const uint rounds = rounds_for(light_samples);
+    const float samples = samples_of_round(light_samples);
+    pass.packets = static_cast<uint>(packets_per_pixel(light_samples));
     const std::size_t tile_packets = std::size_t{CELLS_PER_TILE} * pass.count * pass.packets;
     const uint tiles_at_once =
         static_cast<uint>(std::max<std::size_t>(many_packets / tile_packets, 1));
     const Budget budget{samples, factor_ * samples, exposure_};
     for (; pass.first_tile < tiles.count; pass.first_tile += tiles_at_once) {
         pass.tile_count = std::min(tiles_at_once, tiles.count - pass.first_tile);
-        adaptive_stage_.draw(tiles, pass, budget, sample, surfaces, cuts_, visibility_, weight,
-                             start, estimates);
-        visibility_stage_.learn(pass, adaptive_stage_.draws(), visibility_);
-        progress(static_cast<std::size_t>(static_cast<float>(pass_pixels(pass)) * samples));
+        for (uint round = 0; round < rounds; ++round) {
+            Pass part = pass;
+            part.number += 2 * round;
+            adaptive_stage_.draw(tiles, part, budget, sample, surfaces, cuts_, visibility_,
+                                 1.f / static_cast<float>(rounds), round == 0, estimates);
+            visibility_stage_.learn(part, adaptive_stage_.draws(), visibility_);
+        }
+        if (!done(pass)) return false;
     }
     visibility_stage_.estimate(tiles, cuts_, visibility_);
     set_budget(
         adaptive_stage_.expectations(std::size_t{tiles.count} * CELLS_PER_TILE * pass.count));
+    return true;
 }
 
 // Packets of a launch at most: one tile's pass at least.

@@ -13,15 +13,16 @@ class Adaptive {
   public:
     /// Holds up to `most_tiles` tiles. `width`: of the image, pixels.
     Adaptive(Device& device, const DeviceScene& scene, unsigned most_tiles, unsigned width,
-             uint light_samples);
+             uint most_light_samples);
 
     /// Cuts the light trees for tiles, from their first surfaces; forgets what was learned.
     void start(const Tiles& tiles, const Buffer<Surface>& surfaces, uint seed);
 
-    /// Fills the estimates of one sample of every pixel. `progress` is called with the light
-    /// samples done, over all pixels, after each launch.
-    void draw(const Tiles& tiles, const PixelSample& sample, const Buffer<Surface>& surfaces,
-              Estimates& estimates, const std::function<void(std::size_t)>& progress);
+    /// Fills the estimates of one sample of every pixel, some pixels after others: `done` is called
+    /// whenever those of a pass are there, and says whether to go on.
+    void draw(const Tiles& tiles, const PixelSample& sample, uint light_samples,
+              const Buffer<Surface>& surfaces, Estimates& estimates,
+              const std::function<bool(const Pass&)>& done);
 
     /// Bytes on the device for each tile, and besides.
     [[nodiscard]] static constexpr std::size_t tile_bytes() {
@@ -33,9 +34,9 @@ class Adaptive {
     }
 
   private:
-    void pass_over(const Tiles& tiles, Pass pass, const PixelSample& sample, float samples,
-                   const Buffer<Surface>& surfaces, float weight, bool start, Estimates& estimates,
-                   const std::function<void(std::size_t)>& progress);
+    bool pass_over(const Tiles& tiles, Pass pass, const PixelSample& sample, uint light_samples,
+                   const Buffer<Surface>& surfaces, Estimates& estimates,
+                   const std::function<bool(const Pass&)>& done);
     static std::size_t packets_for(std::size_t tiles, uint light_samples);
     void set_budget(const std::vector<Expectation>& pixels);
 
@@ -48,7 +49,6 @@ class Adaptive {
     Visibility visibility_;
     uint light_count_;
     unsigned width_;
-    uint light_samples_;
     bool fresh_ = true;  // nothing was learned yet
     float factor_ = 0;   // see Budget; for one draw on average
     float exposure_ = 0;

@@ -74,6 +74,11 @@ const std::vector<Aov>& all_aovs() {
          true,
          "number of lights that contribute to the representative",
          lights},
+        {"error",
+         {"error.R", "error.G", "error.B"},
+         false,
+         "estimated squared error relative to the pixel, whose mean is the image's relMSE",
+         nullptr},
     };
     return aovs;
 }

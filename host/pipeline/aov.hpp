@@ -27,6 +27,7 @@ struct Aov {
     std::vector<std::string> channels;  // their names in the file
     bool needs_clusters;
     std::string_view summary;
+    // None for what is known of the whole image at its end only.
     void (*fill)(const BatchFacts& facts, std::size_t item, float* out);
 };
 [[nodiscard]] const std::vector<Aov>& all_aovs();

@@ -13,6 +13,9 @@
 namespace manylight {
 namespace {
 
+// The first samples, whose error says how many more are needed.
+constexpr uint fewest_samples = 4;
+
 // Adds the time until its end to a total, compiling apart.
 class Stopwatch {
   public:
@@ -42,8 +45,11 @@ struct Frame::Stages {
     Estimates estimates;
     ImageSum image;
 
-    Stages(Device& device, DeviceScene uploaded)
-        : scene(std::move(uploaded)), gbuffer(device, scene), accumulate(device, scene) {}
+    Stages(Device& device, DeviceScene uploaded, std::size_t pixels, bool pairs)
+        : scene(std::move(uploaded)),
+          gbuffer(device, scene),
+          accumulate(device, scene, pairs),
+          image(device, pixels, pairs) {}
 };
 
 Frame::Frame(const Device& device, const Scene& scene, const WideBvh& bvh, const Camera& camera,
@@ -56,9 +62,25 @@ Frame::Frame(const Device& device, const Scene& scene, const WideBvh& bvh, const
       sampler_(find_sampler(options.sampler)),
       plan_(make_plan(device.info(), scene, bvh, options)) {
     options_.clusters.shadow.weighed = sampler_.weighs_shadow;
-    const auto lights = static_cast<uint>(scene.lights.size());
-    light_samples_ = sampler_.all_lights || lights == 0 ? lights : options.light_samples;
-    result_.light_samples = light_samples_;
+}
+
+// Light samples of pixel sample i.
+uint Frame::samples_of(uint i) const {
+    const auto lights = static_cast<uint>(scene_.lights.size());
+    return sampler_.all_lights || lights == 0 ? lights : options_.samples_of(i);
+}
+
+// Pixel samples count by their light samples.
+float Frame::weight_of(uint i) const {
+    return static_cast<float>(samples_of(i)) / static_cast<float>(std::max(samples_of(0), 1u));
+}
+
+// Positions in the pixel are stratified over samples. What the error is estimated from has to be
+// independent: the two of a pair then belong to two such sequences.
+PixelSample Frame::position_of(PixelSample sample) const {
+    if (!options_.estimates_error()) return sample;
+    const uint other = sample.index % 2 == 1 ? 0x9e3779b9u : 0u;
+    return {sample.index / 2, sample.seed + other, sample.jitter};
 }
 
 Buffer<float4> Frame::allocate_zeros(std::size_t count) {
@@ -78,22 +100,21 @@ void Frame::prepare() {
     }
     DeviceScene uploaded = upload_scene(device_, scene_, bvh_, camera_, tree ? &tree_ : nullptr);
     if (options_.hide_emitters) uploaded.emission["HAS_EMISSION"] = 0;
-    stages_ = std::make_shared<Stages>(device_, uploaded);
+    stages_ = std::make_shared<Stages>(device_, uploaded, pixels, options_.estimates_error());
     Stages& s = *stages_;
     if (sampler_.table == Table::cuts)
         s.adaptive.emplace(device_, s.scene, plan_.tiles_per_batch, options_.width,
-                           std::max(light_samples_, 1u));
+                           options_.most_samples());
     else
         s.samples.emplace(device_, s.scene, sampler_.kernel_file, items);
     s.surfaces = device_.allocate<Surface>(items);
     if (plan_.centres)
         s.centres = options_.jitters() ? device_.allocate<Surface>(items) : s.surfaces;
     s.estimates = {allocate_zeros(items), allocate_zeros(items)};
-    s.image = {allocate_zeros(pixels), allocate_zeros(pixels)};
     if (plan_.clusters) {
         s.clustering.emplace(device_, s.scene, options_.clusters, plan_.tiles_per_batch);
         s.tables = s.clustering->tables();
-    } else if (sampler_.table == Table::power && light_samples_ > 0) {
+    } else if (sampler_.table == Table::power && !scene_.lights.empty()) {
         Stopwatch watch(result_.prepare_seconds, device_);
         const Mixture mixture = mixture_of(sampler_, scene_.lights);
         s.tables.set("power_cdf", PdfStage(device_, s.scene).of_powers(mixture));
@@ -106,24 +127,79 @@ FrameResult Frame::render(Progress& progress) {
         if (std::ranges::count(options_.aovs, aov.name))
             result_.aovs.emplace_back(aov.name,
                                       Image(options_.width, options_.height, aov.channels));
-    Tiles batch = all_tiles(options_.width, options_.height, options_.tile_size());
-    const uint tiles = batch.count;
-    for (; batch.first < tiles; batch.first += plan_.tiles_per_batch) {
-        batch.count = std::min(plan_.tiles_per_batch, tiles - batch.first);
-        if (plan_.centres) {
+    done_.assign(plan_.batches, 0);
+    if (options_.target_error > 0)
+        render_to_error(progress);
+    else
+        visit_all(options_.spp, 0, 1, progress);
+    if (options_.estimates_error()) {
+        result_.error = estimate_error();
+        for (auto& [name, layer] : result_.aovs)
+            if (name == "error") layer = result_.error->pixels;
+    } else {
+        Stopwatch watch(result_.render_seconds, device_);
+        keep_image();
+    }
+    return std::move(result_);
+}
+
+// Renders as many samples as the error so far says are needed, and looks again.
+void Frame::render_to_error(Progress& progress) {
+    uint end = std::min(fewest_samples, options_.spp);
+    double shown = 0;
+    double share = 0.2;  // of all work, which is not known yet
+    double weight = 0;   // of all samples until `end`
+    uint counted = 0;
+    while (true) {
+        visit_all(end, shown, share, progress);
+        const double error = estimate_error().relmse;
+        const bool late = options_.deadline && Clock::now() >= *options_.deadline;
+        if (error <= options_.target_error || end >= options_.spp || late) return;
+        for (; counted < end; ++counted) weight += weight_of(counted);
+        // Errors fall as the inverse of the weight.
+        const double needed = weight * 1.02 * error / options_.target_error;
+        const double next = std::min(needed, 4 * weight);
+        double reached = weight;
+        uint pairs_end = end;
+        do {
+            reached += 2 * weight_of(pairs_end);
+            pairs_end += 2;
+        } while (reached < next && pairs_end < options_.spp);
+        end = std::min(pairs_end, options_.spp);
+        shown = weight / needed;
+        share = (reached - weight) / needed;
+    }
+}
+
+// Brings all batches to `end` samples per pixel, or as far as time allows.
+void Frame::visit_all(uint end, double shown, double share, Progress& progress) {
+    const Tiles all = all_tiles(options_.width, options_.height, options_.tile_size());
+    for (unsigned i = 0; i < plan_.batches; ++i) {
+        Visit visit;
+        visit.batch = all;
+        visit.number = i;
+        visit.end = end;
+        visit.batch.first = i * plan_.tiles_per_batch;
+        visit.batch.count = std::min(plan_.tiles_per_batch, all.count - visit.batch.first);
+        visit.begun = Clock::now();
+        if (options_.deadline)
+            visit.deadline = visit.begun + (*options_.deadline - visit.begun) / (plan_.batches - i);
+        visit.share = share * visit.batch.count / all.count;
+        visit.shown = shown;
+        shown += visit.share;
+        // What is kept of a batch is lost where another one was in between.
+        visit.fresh = done_[i] == 0 || plan_.batches > 1;
+        if (plan_.centres && visit.fresh) {
             Stopwatch watch(result_.prepare_seconds, device_);
-            stages_->gbuffer.trace(batch, {}, stages_->centres);
-            if (options_.jitters()) result_.primary_rays += pixel_count(batch);
-            if (plan_.clusters) cluster(batch, progress);
-            keep_aovs(batch);
+            stages_->gbuffer.trace(visit.batch, {}, stages_->centres);
+            if (options_.jitters()) result_.primary_rays += pixel_count(visit.batch);
+            if (plan_.clusters) cluster(visit, progress);
+            if (done_[i] == 0) keep_aovs(visit.batch);
             device_.finish();
         }
         Stopwatch watch(result_.render_seconds, device_);
-        sample(batch, progress);
+        sample(visit, progress);
     }
-    Stopwatch watch(result_.render_seconds, device_);
-    keep_image();
-    return std::move(result_);
 }
 
 // How many rays clusters take shows only as they are made: half of the worst is taken for all.
@@ -133,25 +209,30 @@ double Frame::cluster_work(const Tiles& batch) const {
            static_cast<double>(scene_.lights.size());
 }
 
-// `work`: rays of the batch done so far, clusters first.
-void Frame::report(Progress& progress, const Tiles& batch, double work) const {
-    const Tiles all = all_tiles(options_.width, options_.height, options_.tile_size());
-    const double samples =
-        static_cast<double>(item_count(batch)) * options_.spp * std::max(light_samples_, 1u);
-    const double share = work / (cluster_work(batch) + samples);
-    progress.set((batch.first + batch.count * share) / all.count);
+// `work`: rays of the visit done so far, clusters first.
+void Frame::report(Progress& progress, const Visit& visit, double work) const {
+    double samples = 0;
+    for (uint i = done_[visit.number]; i < visit.end && !visit.deadline; ++i)
+        samples += std::max(samples_of(i), 1u);
+    double done =
+        work / (cluster_work(visit.batch) + samples * static_cast<double>(item_count(visit.batch)));
+    if (visit.deadline)
+        done = seconds_since(visit.begun) /
+               std::chrono::duration<double>(*visit.deadline - visit.begun).count();
+    progress.set(visit.shown + visit.share * std::clamp(done, 0.0, 1.0));
 }
 
-void Frame::cluster(const Tiles& batch, Progress& progress) {
+void Frame::cluster(const Visit& visit, Progress& progress) {
     Clustering& clustering = *stages_->clustering;
     double done = 0;
-    clustering.build(batch, stages_->centres, [&](std::size_t entries) {
+    clustering.build(visit.batch, stages_->centres, [&](std::size_t entries) {
         device_.finish();
         done += static_cast<double>(entries);
-        report(progress, batch, std::min(done, cluster_work(batch)));
+        report(progress, visit, std::min(done, cluster_work(visit.batch)));
     });
     clustering.normalise(mixture_of(sampler_, scene_.lights));
-    for (const RowSum& total : clustering.totals()) result_.shadow_rays += total.facing_count;
+    for (const RowSum& total : clustering.totals()) cluster_rays_ += total.facing_count;
+    if (done_[visit.number] > 0) return;
     clusters_before_ = result_.clusters;
     for (const uint split : clustering.split()) result_.clusters += split == 0;
 }
@@ -171,45 +252,86 @@ void Frame::keep_aovs(const Tiles& batch) {
             number += split == 0;
         }
     }
-    for (auto& [name, layer] : result_.aovs)
-        fill_layer(*std::ranges::find(all_aovs(), name, &Aov::name), facts, batch, layer);
+    for (auto& [name, layer] : result_.aovs) {
+        const Aov& aov = *std::ranges::find(all_aovs(), name, &Aov::name);
+        if (aov.fill) fill_layer(aov, facts, batch, layer);
+    }
 }
 
-void Frame::sample(const Tiles& batch, Progress& progress) {
+void Frame::sample(const Visit& visit, Progress& progress) {
     Stages& s = *stages_;
-    double done = cluster_work(batch);
-    for (uint i = 0; i < options_.spp; ++i) {
-        const PixelSample sample{i, options_.seed, options_.jitters()};
-        const bool at_hand = !options_.jitters() && (i > 0 || plan_.centres);
-        if (!at_hand) s.gbuffer.trace(batch, sample, s.surfaces);
-        if (!at_hand || i == 0) result_.primary_rays += pixel_count(batch);
-        const auto count = [&](std::size_t samples) {
-            device_.finish();
-            done += static_cast<double>(samples);
-            report(progress, batch, done);
+    const Tiles& batch = visit.batch;
+    double work = cluster_work(batch);
+    double seconds_per_sample = 0;  // of a light sample of all pixels
+    const uint first = done_[visit.number];
+    for (uint i = first; i < visit.end; ++i) {
+        const uint count = samples_of(i);
+        const auto begun = Clock::now();
+        const auto seconds_left = [&] {
+            return std::chrono::duration<double>(*visit.deadline - Clock::now()).count();
         };
-        if (s.adaptive && light_samples_ > 0) {
-            if (i == 0) s.adaptive->start(batch, s.surfaces, options_.seed);
-            s.adaptive->draw(batch, sample, s.surfaces, s.estimates, count);
-        } else if (s.samples) {
-            s.samples->draw(batch, sample, light_samples_, s.surfaces, s.tables, s.estimates,
-                            count);
+        // One sample is taken whatever the time.
+        const bool may_stop = visit.deadline.has_value() && i > 0;
+        const double expected = s.adaptive ? 0 : seconds_per_sample * count;
+        if (may_stop && seconds_left() < expected / 2) break;
+        const PixelSample sample{i, options_.seed, options_.jitters()};
+        const bool at_hand = !options_.jitters() && (i > first || plan_.centres);
+        if (!at_hand) s.gbuffer.trace(batch, position_of(sample), s.surfaces);
+        if (!at_hand || i == 0) result_.primary_rays += pixel_count(batch);
+        const auto add = [&](const std::optional<Pass>& pass) {
+            s.accumulate.add(batch, pass, s.surfaces, s.estimates.sums, {weight_of(i), i % 2 == 1},
+                             s.image);
+        };
+        const auto progress_by = [&](std::size_t samples) {
+            device_.finish();
+            work += static_cast<double>(samples);
+            report(progress, visit, work);
+        };
+        result_.later_light_samples = count;
+        done_[visit.number] = i + 1;
+        if (s.adaptive && count > 0) {
+            if (i == first && visit.fresh) s.adaptive->start(batch, s.surfaces, options_.seed);
+            s.adaptive->draw(batch, sample, count, s.surfaces, s.estimates, [&](const Pass& pass) {
+                add(pass);
+                progress_by(pass_pixels(pass) * count);
+                return !may_stop || seconds_left() > 0;
+            });
+        } else {
+            if (s.samples)
+                s.samples->draw(batch, sample, count, s.surfaces, s.tables, s.estimates,
+                                progress_by);
+            add({});
         }
-        s.accumulate.add(batch, s.surfaces, s.estimates.sums, s.image);
+        device_.finish();
+        seconds_per_sample = seconds_since(begun) / std::max(count, 1u);
     }
-    device_.finish();
+}
+
+ErrorEstimate Frame::estimate_error() {
+    Stopwatch watch(result_.render_seconds, device_);
+    keep_image();
+    return manylight::estimate_error(result_.image, stages_->image.differences.download(),
+                                     stages_->image.weights.download());
 }
 
 void Frame::keep_image() {
     result_.image = Image(options_.width, options_.height, {"R", "G", "B"});
     const std::vector<float4> sums = stages_->image.sums.download();
+    const std::vector<float> weights = stages_->image.weights.download();
     double rays = 0;
+    double samples = 0;
+    const float first_weight = std::min(options_.spp, fewest_samples) * 1.f;
+    const float later_weight = weight_of(fewest_samples);
     for (std::size_t i = 0; i < sums.size(); ++i) {
         for (int c = 0; c < 3; ++c)
-            result_.image.values[3 * i + c] = sums[i][c] / static_cast<float>(options_.spp);
+            result_.image.values[3 * i + c] = sums[i][c] / std::max(weights[i], 1e-30f);
         rays += sums[i].w;
+        samples += std::min(weights[i], first_weight) +
+                   std::max(weights[i] - first_weight, 0.f) / later_weight;
     }
-    result_.shadow_rays += static_cast<std::size_t>(rays);
+    result_.shadow_rays = cluster_rays_ + static_cast<std::size_t>(rays);
+    result_.spp = samples / static_cast<double>(sums.size());
+    result_.light_samples = samples_of(0);
 }
 
 }  // namespace manylight

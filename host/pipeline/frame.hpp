@@ -6,10 +6,12 @@
 #include <string>
 #include <vector>
 
+#include "output/error_estimate.hpp"
 #include "output/image.hpp"
 #include "output/progress.hpp"
 #include "pipeline/plan.hpp"
 #include "scene/scene.hpp"
+#include "stages/gbuffer.hpp"
 
 namespace manylight {
 
@@ -20,9 +22,12 @@ struct FrameResult {
     std::size_t clusters = 0;
     std::size_t primary_rays = 0;
     std::size_t shadow_rays = 0;
-    uint light_samples = 0;      // per pixel sample
-    double prepare_seconds = 0;  // clusters, contributions, PDFs; compiling apart
-    double render_seconds = 0;   // the rest, likewise
+    uint light_samples = 0;              // of the first pixel sample
+    uint later_light_samples = 0;        // of the last one
+    double spp = 0;                      // pixel samples, on average where time ended
+    std::optional<ErrorEstimate> error;  // where it was asked for
+    double prepare_seconds = 0;          // clusters, contributions, PDFs; compiling apart
+    double render_seconds = 0;           // the rest, likewise
 };
 
 /// Renders a scene, batch by batch of its image's tiles. Keeps references to scene and BVH.
@@ -41,15 +46,33 @@ class Frame {
     [[nodiscard]] FrameResult render(Progress& progress);
 
   private:
+    struct Stages;
+    // Samples of a batch's pixels.
+    struct Visit {
+        Tiles batch;
+        unsigned number;    // of the batch
+        uint end;           // pixel samples until
+        bool fresh = true;  // nothing is kept of it
+        Clock::time_point begun;
+        std::optional<Clock::time_point> deadline;
+        double shown = 0;  // of the progress bar, before
+        double share = 1;  // of the progress bar
+    };
+
     [[nodiscard]] Buffer<float4> allocate_zeros(std::size_t count);
-    void cluster(const Tiles& batch, Progress& progress);
+    [[nodiscard]] uint samples_of(uint i) const;
+    [[nodiscard]] PixelSample position_of(PixelSample sample) const;
+    [[nodiscard]] float weight_of(uint i) const;
+    void render_to_error(Progress& progress);
+    void visit_all(uint end, double shown, double share, Progress& progress);
+    void cluster(const Visit& visit, Progress& progress);
     void keep_aovs(const Tiles& batch);
-    void sample(const Tiles& batch, Progress& progress);
+    void sample(const Visit& visit, Progress& progress);
+    [[nodiscard]] ErrorEstimate estimate_error();
     void keep_image();
     [[nodiscard]] double cluster_work(const Tiles& batch) const;
-    void report(Progress& progress, const Tiles& batch, double work) const;
+    void report(Progress& progress, const Visit& visit, double work) const;
 
-    struct Stages;
     Device device_;
     const Scene& scene_;
     const WideBvh& bvh_;
@@ -57,9 +80,10 @@ class Frame {
     RenderOptions options_;
     const Sampler& sampler_;
     Plan plan_;
-    LightTree tree_;  // where the sampler uses it
-    uint light_samples_;
+    LightTree tree_;                   // where the sampler uses it
+    std::vector<uint> done_;           // [batch] pixel samples begun
     std::size_t clusters_before_ = 0;  // the batch in work
+    std::size_t cluster_rays_ = 0;
     std::shared_ptr<Stages> stages_;
     FrameResult result_;
 };

@@ -6,6 +6,7 @@
 #include "error.hpp"
 #include "pipeline/adaptive.hpp"
 #include "pipeline/aov.hpp"
+#include "stages/accumulate.hpp"
 #include "stages/samples.hpp"
 
 namespace manylight {
@@ -45,6 +46,10 @@ void check_buffers(const DeviceInfo& device, const Scene& scene, const WideBvh& 
 
 }  // namespace
 
+bool RenderOptions::estimates_error() const {
+    return target_error > 0 || std::ranges::count(aovs, "error") > 0;
+}
+
 unsigned RenderOptions::tile_size() const {
     return find_sampler(sampler).table == Table::cuts ? ADAPTIVE_TILE : clusters.tile_size;
 }
@@ -61,16 +66,22 @@ Plan make_plan(const DeviceInfo& device, const Scene& scene, const WideBvh& bvh,
     const Tiles tiles = all_tiles(options.width, options.height, size);
     const auto lights = static_cast<uint>(scene.lights.size());
     Plan plan;
+    if (options.estimates_error() && options.spp < 2)
+        throw InputError("--spp {}: the error is estimated from pairs of pixel samples",
+                         options.spp);
     plan.clusters = sampler.table == Table::clusters && lights > 0;
-    plan.centres = plan.clusters || !options.aovs.empty();
+    plan.centres = plan.clusters || std::ranges::any_of(options.aovs, [](const std::string& name) {
+                       return name != "error";
+                   });
     check_aovs(options, plan.clusters);
     plan.scene_bytes = bytes_of(bvh.nodes) + bytes_of(bvh.blocks) + bytes_of(scene.vertices) +
                        bytes_of(scene.vertex_normals) + bytes_of(scene.indices) +
                        bytes_of(scene.triangle_materials) + bytes_of(scene.materials) +
                        bytes_of(scene.lights);
     if (sampler.uses_tree()) plan.scene_bytes += 2 * sizeof(LightNode) * lights;
-    plan.image_bytes = std::size_t{options.width} * options.height * 2 * sizeof(float4);
-    check_buffers(device, scene, bvh, plan.image_bytes / 2);
+    plan.image_bytes = std::size_t{options.width} * options.height *
+                       ImageSum::pixel_bytes(options.estimates_error());
+    check_buffers(device, scene, bvh, std::size_t{options.width} * options.height * sizeof(float4));
 
     const bool two_surfaces = plan.centres && options.jitters();
     const bool cuts = sampler.table == Table::cuts;
@@ -78,8 +89,7 @@ Plan make_plan(const DeviceInfo& device, const Scene& scene, const WideBvh& bvh,
         tile_items * (sizeof(Surface) * (two_surfaces ? 2 : 1) + 2 * sizeof(float4));
     tile_bytes += cuts ? Adaptive::tile_bytes() : tile_items * SampleStage::item_bytes();
     std::size_t tile_matrix = 0;
-    std::size_t ray_bytes =
-        cuts ? Adaptive::fixed_bytes(tiles.count, std::max(options.light_samples, 1u)) : 0;
+    std::size_t ray_bytes = cuts ? Adaptive::fixed_bytes(tiles.count, options.most_samples()) : 0;
     if (plan.clusters) {
         tile_bytes += Clustering::tile_bytes(options.clusters, lights);
         ray_bytes = ContributionStage::ray_bytes(lights);

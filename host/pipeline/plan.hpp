@@ -1,15 +1,20 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <optional>
+
 #include "bvh/wide.hpp"
+#include "clock.hpp"
 #include "pipeline/clustering.hpp"
 
 namespace manylight {
 
 struct RenderOptions {
     std::string sampler = "adaptive";
-    uint light_samples = 4;  // per pixel sample; exhaustive takes all lights
-    uint spp = 4;            // pixel samples
+    uint light_samples = 0;   // per pixel sample, see samples_of(); exhaustive takes all lights
+    uint spp = 4;             // pixel samples, at most
+    double target_error = 0;  // stop at this relMSE; 0: at spp
+    std::optional<Clock::time_point> deadline;  // stop by then, but for one sample of each pixel
     uint seed = 0;
     unsigned width = 512;
     unsigned height = 512;
@@ -18,6 +23,16 @@ struct RenderOptions {
     ClusterOptions clusters;
     std::size_t memory = 0;  // bytes on the device; 0: half of it, at most 2 GiB
     std::vector<std::string> aovs;
+
+    /// Light samples of pixel sample i: as given, or 4 in the first four, then 16. Weights at a
+    /// pixel are evaluated once per pixel sample, whatever the number of its light samples.
+    [[nodiscard]] uint samples_of(uint i) const {
+        return light_samples > 0 ? light_samples : (i < 4 ? 4u : 16u);
+    }
+    [[nodiscard]] uint most_samples() const { return samples_of(spp - 1); }
+
+    /// Whether the error is estimated from pairs of pixel samples.
+    [[nodiscard]] bool estimates_error() const;
 
     /// Pixels of a tile's side: of the clusters, where the sampler leaves it open.
     [[nodiscard]] unsigned tile_size() const;

@@ -1,20 +1,56 @@
 // SPDX-License-Identifier: MIT
 #include "stages/accumulate.hpp"
 
+#include "stages/adaptive.hpp"
+
 namespace manylight {
+namespace {
 
-AccumulateStage::AccumulateStage(Device& device, const DeviceScene& scene)
-    : scene_(scene.arguments),
-      add_(device.kernel("accumulate.cl", "accumulate_add", scene.emission, "accumulate")) {}
+template <class T>
+Buffer<T> zeros(Device& device, std::size_t count) {
+    Buffer<T> buffer = device.allocate<T>(count);
+    buffer.clear();
+    return buffer;
+}
 
-void AccumulateStage::add(const Tiles& tiles, const Buffer<Surface>& surfaces,
-                          const Buffer<float4>& estimates, ImageSum& image) {
-    add_.launch(item_count(tiles), Arguments(scene_)
-                                       .set("tiles", tiles)
-                                       .set("surfaces", surfaces)
-                                       .set("estimates", estimates)
-                                       .set("image", image.sums)
-                                       .set("residuals", image.residuals));
+}  // namespace
+
+ImageSum::ImageSum(Device& device, std::size_t pixels, bool pairs)
+    : sums(zeros<float4>(device, pixels)),
+      residuals(zeros<float4>(device, pixels)),
+      weights(zeros<float>(device, pixels)) {
+    if (!pairs) return;
+    pending = zeros<float4>(device, pixels);
+    differences = zeros<float4>(device, pixels);
+}
+
+AccumulateStage::AccumulateStage(Device& device, const DeviceScene& scene, bool pairs)
+    : scene_(scene.arguments), pairs_(pairs) {
+    auto defines = scene.emission;
+    defines["HAS_PAIRS"] = pairs;
+    add_ = device.kernel("accumulate.cl", "accumulate_add", defines, "accumulate");
+    add_pass_ = device.kernel("accumulate.cl", "accumulate_add_pass", defines, "accumulate");
+}
+
+void AccumulateStage::add(const Tiles& tiles, const std::optional<Pass>& pass,
+                          const Buffer<Surface>& surfaces, const Buffer<float4>& estimates,
+                          SampleWeight weight, ImageSum& image) {
+    Arguments arguments = scene_;
+    arguments.set("tiles", tiles)
+        .set("surfaces", surfaces)
+        .set("estimates", estimates)
+        .set("weight", weight.weight)
+        .set("image", image.sums)
+        .set("residuals", image.residuals)
+        .set("weights", image.weights);
+    if (pairs_)
+        arguments.set("odd", uint{weight.odd})
+            .set("pending", image.pending)
+            .set("differences", image.differences);
+    if (pass)
+        add_pass_.launch(pass_pixels(*pass), arguments.set("pass", *pass));
+    else
+        add_.launch(item_count(tiles), arguments);
 }
 
 }  // namespace manylight

@@ -130,27 +130,48 @@ void Verifier::check_surface(Check& check, const Surface& found, uint x, uint y,
 Check Verifier::accumulate() {
     Check check{.stage = "accumulate", .tolerance = "2 eps of the sum (compensated)"};
     const std::size_t pixels = std::size_t{tiles_.width} * tiles_.height;
-    ImageSum image{device_.upload(std::vector<float4>(pixels, float4(1e6f, 2, 3, 4))),
-                   device_.upload(std::vector<float4>(pixels, float4(0)))};
-    AccumulateStage stage(device_, device_scene_);
+    ImageSum image(device_, pixels, true);
+    image.sums.upload(std::vector<float4>(pixels, float4(1e6f, 2, 3, 4)));
+    AccumulateStage stage(device_, device_scene_, true);
     std::vector<glm::dvec4> expected(pixels, glm::dvec4(1e6f, 2, 3, 4));
+    std::vector<glm::dvec4> firsts(pixels);
+    std::vector<glm::dvec4> differences(pixels, glm::dvec4(0));
+    double weights = 0;
     for (uint sample = 0; sample < 5; ++sample) {
         std::vector<float4> estimates(item_count(tiles_));
         for (std::size_t i = 0; i < estimates.size(); ++i)
-            estimates[i] = float4(0.013f * static_cast<float>(i % 97), 2, 1e-6f, 3);
-        stage.add(tiles_, surfaces_, device_.upload(estimates), image);
+            estimates[i] = float4(0.013f * static_cast<float>((i + 31 * sample) % 97), 2, 1e-6f, 3);
+        const float weight = sample < 2 ? 1.f : 4.f;
+        stage.add(tiles_, {}, surfaces_, device_.upload(estimates), {weight, sample % 2 == 1},
+                  image);
+        weights += weight;
         reference::for_each_pixel(tiles_, [&](uint x, uint y, std::size_t item) {
-            expected[std::size_t{y} * tiles_.width + x] +=
+            const std::size_t pixel = std::size_t{y} * tiles_.width + x;
+            const glm::dvec4 value =
+                glm::dvec4(weight, weight, weight, 1) *
                 reference::pixel_sample_value(found_[item], estimates[item], scene_);
+            expected[pixel] += value;
+            if (sample % 2 == 0)
+                firsts[pixel] = value;
+            else
+                differences[pixel] += glm::dvec4(glm::dvec3(firsts[pixel] - value), 2 * weight);
         });
     }
     const std::vector<float4> found = image.sums.download();
+    const std::vector<float4> found_differences = image.differences.download();
+    const std::vector<float> found_weights = image.weights.download();
     reference::for_each_pixel(tiles_, [&](uint x, uint y, std::size_t) {
         const std::size_t pixel = std::size_t{y} * tiles_.width + x;
-        for (int c = 0; c < 4; ++c)
+        const std::string name = fmt::format("pixel ({}, {})", x, y);
+        check.compare_exact(found_weights[pixel] == weights, name + ": weight");
+        for (int c = 0; c < 4; ++c) {
             check.compare(std::abs(found[pixel][c] - expected[pixel][c]),
-                          2 * epsilon * expected[pixel][c],
-                          fmt::format("pixel ({}, {}), channel {}", x, y, c));
+                          2 * epsilon * expected[pixel][c], fmt::format("{}, channel {}", name, c));
+            // Differences of single samples, beside which there may be an emitter's radiance.
+            check.compare(std::abs(found_differences[pixel][c] - differences[pixel][c]),
+                          4 * epsilon * (std::abs(differences[pixel][c]) + expected[pixel][c]),
+                          fmt::format("{}, channel {}: difference", name, c));
+        }
     });
     return check;
 }
