@@ -66,6 +66,19 @@ void Adaptive::draw(const Tiles& tiles, const PixelSample& sample, const Buffer<
     }
 }
 
+TileKnowledge Adaptive::knowledge(uint tile) const {
+    const float samples = samples_of_round(light_samples_);
+    TileKnowledge out{{}, {}, {samples, factor_ * samples, exposure_}, rounds_for(light_samples_)};
+    const std::size_t begin = std::size_t{tile} * CUT_CAPACITY;
+    out.cut = cuts_.nodes.download(begin, cuts_.sizes.download(tile, 1)[0]);
+    const std::vector<float> roots =
+        visibility_.roots.download(begin * CELLS_PER_TILE, CUT_CAPACITY * CELLS_PER_TILE);
+    for (std::size_t slot = 0; slot < out.cut.size(); ++slot)
+        for (std::size_t cell = 0; cell < CELLS_PER_TILE; ++cell)
+            out.roots.push_back(roots[(cell / 16 * CUT_CAPACITY + slot) * 16 + cell % 16]);
+    return out;
+}
+
 void Adaptive::pass_over(const Tiles& tiles, Pass pass, const PixelSample& sample, float samples,
                          const Buffer<Surface>& surfaces, float weight, bool start,
                          Estimates& estimates, const std::function<void(std::size_t)>& progress) {

@@ -7,6 +7,14 @@
 
 namespace manylight {
 
+/// What sampler adaptive knows of a tile, and how it would draw a pixel sample's next pass.
+struct TileKnowledge {
+    std::vector<uint> cut;     // [slot] node of the light tree
+    std::vector<float> roots;  // [64 * slot + cell] root of V^, cells in Morton order
+    Budget budget;             // of one round
+    uint rounds;               // of draws, whose mean is taken
+};
+
 /// Sampler adaptive on a batch of tiles: pixels in interleaved passes, each of which learns from
 /// the shadow rays of those before it.
 class Adaptive {
@@ -22,6 +30,9 @@ class Adaptive {
     /// samples done, over all pixels, after each launch.
     void draw(const Tiles& tiles, const PixelSample& sample, const Buffer<Surface>& surfaces,
               Estimates& estimates, const std::function<void(std::size_t)>& progress);
+
+    /// What is known of a tile of the batch, after draw().
+    [[nodiscard]] TileKnowledge knowledge(uint tile) const;
 
     /// Bytes on the device for each tile, and besides.
     [[nodiscard]] static constexpr std::size_t tile_bytes() {

@@ -200,6 +200,8 @@ void Frame::sample(const Tiles& batch, Progress& progress) {
     device_.finish();
 }
 
+TileKnowledge Frame::knowledge(uint tile) const { return stages_->adaptive->knowledge(tile); }
+
 void Frame::keep_image() {
     result_.image = Image(options_.width, options_.height, {"R", "G", "B"});
     const std::vector<float4> sums = stages_->image.sums.download();
