@@ -106,6 +106,8 @@ std::string reason(const Inspected& in, const InspectedNode& n) {
 }
 
 std::vector<std::string> explain(const Inspected& in) {
+    if (in.luminance == 0 && in.report.variance == 0)
+        return {"It reflects no light, and has no noise."};
     if (in.luminance == 0)
         return {
             fmt::format("It reflects no light; a pixel sample deviates by {:.3g} cd/m2, where "
@@ -295,11 +297,14 @@ int run_inspect(const InspectArguments& arguments) {
     const WideBvh bvh =
         build_wide_bvh(loaded.scene, lanes, lanes, reach_of(loaded.scene, loaded.camera));
     Frame frame(device, loaded.scene, bvh, loaded.camera, options);
-    if (frame.plan().batches > 1)
+    if (frame.plan().batches > 1) {
+        const std::size_t most = options.memory > 0 ? options.memory : frame.plan().total_bytes();
         throw InputError(
-            "--memory: too little to keep what is learned of {} x {} pixels at once; a smaller "
-            "--height needs less",
+            "--memory: {:.1f} MiB{} is too little to keep what is learned of {} x {} pixels at "
+            "once; a smaller --height needs less",
+            static_cast<double>(most) / (1 << 20), options.memory > 0 ? "" : " (the default)",
             options.width, options.height);
+    }
     frame.prepare();
     const FrameResult result = [&] {
         Progress progress("rendering");
