@@ -96,7 +96,7 @@ std::string reason(const Inspected& in, const InspectedNode& n) {
             n.visibility, n.draws);
     const std::string both = fmt::format("gives {} of the light and gets {} of the draws",
                                          percent(light), percent(draws));
-    if (light > 1.5 * draws && n.visibility < believed_hidden)
+    if (light > draws && n.visibility < believed_hidden)
         return fmt::format("{}, being believed hidden (V^ {:.2f})", both, n.visibility);
     if (light > 1.5 * draws) return both + ", being estimated too low";
     if (draws > 1.5 * light) return both + ", being estimated too high";
