@@ -3,8 +3,10 @@
 
 usage: commands.py MANYLIGHT SCENES
 """
+import base64
 import json
 import pathlib
+import struct
 import subprocess
 import sys
 import tempfile
@@ -36,6 +38,25 @@ class CommandTest(unittest.TestCase):
 
     def files(self):
         return sorted(path.name for path in self.folder.iterdir())
+
+    def write_lamp(self, lights=True):
+        """A triangle of material 'paint' below a light 'lamp'; the camera frames it."""
+        corners = struct.pack("<9f", -1, 0, 1, 1, 0, 1, 0, 0, -1)
+        scene = {
+            "asset": {"version": "2.0"},
+            "scenes": [{"nodes": [0, 1] if lights else [0]}],
+            "nodes": [{"mesh": 0}, {"name": "lamp", "translation": [0, 1, 0],
+                                    "extensions": {"KHR_lights_punctual": {"light": 0}}}],
+            "extensionsUsed": ["KHR_lights_punctual"],
+            "extensions": {"KHR_lights_punctual": {"lights": [{"type": "point", "intensity": 3}]}},
+            "materials": [{"name": "paint"}],
+            "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "material": 0}]}],
+            "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3",
+                           "min": [-1, 0, -1], "max": [1, 0, 1]}],
+            "bufferViews": [{"buffer": 0, "byteLength": 36}],
+            "buffers": [{"byteLength": 36, "uri": "data:application/octet-stream;base64," +
+                         base64.b64encode(corners).decode()}]}
+        (self.folder / "lamp.gltf").write_text(json.dumps(scene))
 
     # What render makes.
 
@@ -120,6 +141,28 @@ class CommandTest(unittest.TestCase):
                              "--stats", "s.json", "-q")
             self.assertEqual(json.loads((self.folder / "s.json").read_text())["lights"], lights)
 
+    def test_top_lights(self):
+        run = self.run_program("render", self.cornell, "--height", 32, "--top-lights", 3, "--stats",
+                               "s.json", "-o", "a.png")
+        top = json.loads((self.folder / "s.json").read_text())["top_lights"]
+        self.assertEqual(len(top["lights"]), 3)
+        self.assertGreater(top["points"], 500)
+        self.assertEqual(top["light_samples"], 16)
+        for light in top["lights"]:
+            self.assertIn(f"oriented light {light['light']} ", run.stdout)
+            self.assertTrue(0 < light["standard_error"] < light["share"] < 0.05, light)
+            self.assertTrue(0 < light["seen"] <= 1, light)
+        for words in ("of the light", "seen from", "16 draws", "standard error"):
+            self.assertIn(words, run.stdout)
+        self.write_lamp()
+        run = self.run_program("render", "lamp.gltf", "--height", 16, "--top-lights", 5)
+        self.assertIn("point light 'lamp'", run.stdout)
+        self.assertIn("100.00%", run.stdout)
+        self.write_lamp(lights=False)
+        run = self.run_program("render", "lamp.gltf", "--height", 16, "--top-lights", 5)
+        self.assertIn("no light reaches the image", run.stdout)
+        self.refuse("render", self.cornell, "--top-lights", 0, words=["--top-lights", "0"])
+
     def test_warnings_do_not_stop(self):
         scene = json.loads('{"asset": {"version": "2.0"}, "extensionsUsed": ["KHR_lights_ies"]}')
         (self.folder / "dark.gltf").write_text(json.dumps(scene))
@@ -199,6 +242,82 @@ class CommandTest(unittest.TestCase):
         self.refuse("render", words=["file"])
         self.refuse("scene", "cornell", words=["--output"])
 
+    # inspect.
+
+    def test_inspect(self):
+        run = self.run_program("inspect", self.cornell, "--height", 32, "--pixel", "16,20",
+                               "--json", "i.json", "--top-lights", 320)
+        self.assertEqual(self.files(), ["cornell-pixel.png", "i.json"])
+        facts = json.loads((self.folder / "i.json").read_text())
+        for key, value in dict(pixel=[16, 20], tile=0, hit=True, width=32, height=32, lights=64,
+                               light_samples=4, spp=4, seed=0).items():
+            self.assertEqual(facts[key], value, key)
+        nodes = facts["ranked"]
+        self.assertEqual(sorted(n["light"] for n in nodes), list(range(64)))
+        self.assertAlmostEqual(sum(n["draws"] for n in nodes), facts["draws"])
+        self.assertAlmostEqual(sum(n["contribution"] for n in nodes), facts["luminance"])
+        self.assertAlmostEqual(sum(n["noise_share"] for n in nodes) + facts["count_noise_share"], 1)
+        importance = [max(n["contribution"] / facts["luminance"], n["draws"] / facts["draws"],
+                          n["noise_share"]) for n in nodes]
+        self.assertEqual(importance, sorted(importance, reverse=True))
+        for words in ("pixel 16, 20 of 32 x 32", "surface: ", "material ", "a cut of 64 nodes",
+                      f"oriented light {nodes[0]['light']} ", "V^", "deviates by",
+                      "wrote cornell-pixel.png", "wrote i.json", *facts["explanation"]):
+            self.assertIn(words, run.stdout)
+        self.run_program("inspect", self.cornell, "--height", 32, "--pixel", "16,20", "--top-lights",
+                         2, "-o", "p.png", "--seed", 4, "--spp", 1, "--light-samples", 2, "--json",
+                         "i.json")
+        facts = json.loads((self.folder / "i.json").read_text())
+        self.assertEqual((len(facts["ranked"]), facts["seed"], facts["spp"]), (2, 4, 1))
+        self.assertIn("p.png", self.files())
+
+    def test_inspect_names_what_it_finds(self):
+        self.write_lamp()
+        run = self.run_program("inspect", "lamp.gltf", "--height", 32, "--pixel", "28,17")
+        self.assertIn("point light 'lamp'", run.stdout)
+        self.assertIn("at (0.00, 1.00, 0.00)", run.stdout)
+        self.assertIn("material 'paint'", run.stdout)
+
+    def test_inspect_where_nothing_is_to_be_seen(self):
+        self.write_lamp()
+        run = self.run_program("inspect", "lamp.gltf", "--height", 32, "--pixel", "0,0", "--json",
+                               "i.json")
+        self.assertIn("sees nothing", run.stdout)
+        facts = json.loads((self.folder / "i.json").read_text())
+        self.assertFalse(facts["hit"])
+        self.assertIn("lamp-pixel.png", self.files())
+        self.write_lamp(lights=False)
+        run = self.run_program("inspect", "lamp.gltf", "--height", 32, "--pixel", "28,17")
+        self.assertIn("no lights", run.stdout)
+
+    def test_inspect_refuses(self):
+        scene = self.folder / "x.png"  # a scene by another name
+        scene.write_bytes(pathlib.Path(self.cornell).read_bytes())
+        pixel = ["--pixel", "3,4"]
+        for arguments, words in (
+                ([], ["--pixel"]),
+                (["--pixel", "3"], ["--pixel", "3", "320,200"]),
+                (["--pixel", "3;4"], ["--pixel", "3;4"]),
+                (["--pixel", "3,4,5"], ["--pixel", "3,4,5"]),
+                (["--pixel", "a,b"], ["--pixel", "a,b"]),
+                (["--pixel=-3,4"], ["--pixel", "-3,4"]),
+                (["--pixel", "3,1.5"], ["--pixel", "3,1.5"]),
+                (["--pixel", "8,4", "--height", 8], ["x.png", "--pixel", "8,4", "8 x 8"]),
+                (["--pixel", "4,8", "--height", 8], ["x.png", "--pixel", "4,8", "8 x 8"]),
+                ([*pixel, "--top-lights", 0], ["--top-lights", "0"]),
+                ([*pixel, "-o", "a.exr"], ["--output", "a.exr", ".png"]),
+                ([*pixel, "-o", "no/a.png"], ["--output", "no/a.png", "folder"]),
+                ([*pixel, "--json", "no/a.json"], ["--json", "no/a.json", "folder"]),
+                ([*pixel, "-o", "a.png", "--json", "a.png"], ["--json", "a.png", "--output"]),
+                ([*pixel, "-o", "x.png"], ["--output", "x.png", "scene"]),
+                ([*pixel, "--json", "x.png"], ["--json", "x.png", "scene"]),
+                ([*pixel, "--memory", "80M"], ["--memory", "80.0 MiB", "512 x 512", "at once"]),
+                ([*pixel, "--camera", "top"], ["--camera", "top"])):
+            with self.subTest(arguments=arguments):
+                self.refuse("inspect", "x.png", *arguments, words=words)
+                self.assertEqual(self.files(), ["x.png"])
+        self.refuse("inspect", "none.glb", *pixel, words=["none.glb"])
+
     # The other commands.
 
     def test_scene(self):
@@ -264,7 +383,7 @@ class CommandTest(unittest.TestCase):
 
     def test_help(self):
         self.assertIn("render", self.run_program("--help").stdout)
-        for command in ("render", "verify", "scene", "compare"):
+        for command in ("render", "inspect", "verify", "scene", "compare"):
             text = self.run_program(command, "--help").stdout
             self.assertIn("Example", text)
         self.assertIn("0.1", self.run_program("--version").stdout)

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <map>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -31,8 +32,19 @@ struct RenderArguments {
     std::vector<std::string> outputs;
     std::optional<float> exposure;  // stops over the scene's units; otherwise automatic
     std::string cluster_map;        // .png
+    unsigned top_lights = 0;        // to report; 0: none
     std::string stats;
     bool quiet = false;
+};
+
+struct InspectArguments {
+    SceneArguments scene;
+    RenderOptions options;  // light_samples, spp, seed, memory
+    unsigned x = 0;         // the pixel, from the top left
+    unsigned y = 0;
+    unsigned top_lights = 16;
+    std::string output;  // .png; empty: named after the scene
+    std::string json;    // file
 };
 
 struct VerifyArguments {
@@ -63,6 +75,7 @@ struct BenchArguments {
 
 // Each returns the program's exit status and throws InputError or RuntimeError.
 int run_render(const RenderArguments& arguments);
+int run_inspect(const InspectArguments& arguments);
 int run_verify(const VerifyArguments& arguments);
 int run_scene(const BuiltinArguments& arguments);
 int run_devices();
@@ -83,5 +96,10 @@ struct LoadedScene {
 
 /// Loads a scene, makes its emitters lights and finds the camera; prints the file's warnings.
 [[nodiscard]] LoadedScene load(const SceneArguments& arguments);
+
+/// Estimates the `count` lights that give the image most (see find_top_lights) and, unless `quiet`,
+/// prints them as a table. Returns the same for --stats.
+[[nodiscard]] nlohmann::json report_top_lights(const LoadedScene& loaded, unsigned count, uint seed,
+                                               bool quiet);
 
 }  // namespace manylight

@@ -178,6 +178,10 @@ void add_render(CLI::App& app, std::function<int()>& run) {
         ->allow_extra_args(false);
     command->add_option("--cluster-map", arguments->cluster_map,
                         "picture of the clusters and their representatives, .png");
+    command
+        ->add_option("--top-lights", arguments->top_lights,
+                     "list the K lights that give the image most, with their shares")
+        ->check(whole(1, 1000));
     command->add_option("--stats", arguments->stats, "seconds, rays and memory, as JSON");
     command->add_option_function<std::string>(
         "--memory", [&o](const std::string& text) { o.memory = parse_bytes(text); },
@@ -191,7 +195,8 @@ void add_render(CLI::App& app, std::function<int()>& run) {
                     "  manylight render scene.glb --time 10\n"
                     "  manylight render scene.glb --target-error 0.001 --aov error -o a.exr\n"
                     "  manylight render scene.glb --sampler exhaustive -o reference.exr\n"
-                    "  manylight render scene.glb --cluster-map clusters.png --stats stats.json\n");
+                    "  manylight render scene.glb --cluster-map clusters.png --stats stats.json\n"
+                    "  manylight render scene.glb --top-lights 10\n");
     command->callback([&run, arguments] {
         if (arguments->sampler != "auto") (void)find_sampler(arguments->sampler);
         RenderOptions& o = arguments->options;
@@ -202,6 +207,58 @@ void add_render(CLI::App& app, std::function<int()>& run) {
                 throw CLI::ValidationError("--aov", "there is no layer " + name);
         run = [arguments] { return run_render(*arguments); };
     });
+}
+
+// "320,200": a pixel.
+void parse_pixel(const std::string& text, InspectArguments& out) {
+    const std::size_t comma = text.find(',');
+    std::string x = text.substr(0, comma);
+    std::string y = comma == std::string::npos ? "" : text.substr(comma + 1);
+    const CLI::Validator coordinate = whole(0, 65535);
+    if (!coordinate(x).empty() || !coordinate(y).empty())
+        throw CLI::ValidationError("--pixel", text + " is no pixel; write, for instance, 320,200");
+    out.x = static_cast<unsigned>(std::stoul(x));
+    out.y = static_cast<unsigned>(std::stoul(y));
+}
+
+void add_inspect(CLI::App& app, std::function<int()>& run) {
+    auto arguments = std::make_shared<InspectArguments>();
+    CLI::App* command = app.add_subcommand(
+        "inspect", "tell why a pixel is noisy: what sampler adaptive knows there, and the truth");
+    add_scene(*command, arguments->scene);
+    InspectArguments& a = *arguments;
+    a.options.light_samples = 4;
+    command
+        ->add_option_function<std::string>(
+            "--pixel", [&a](const std::string& text) { parse_pixel(text, a); },
+            "X,Y: the pixel, from the top left")
+        ->required();
+    command->add_option("-o,--output", a.output,
+                        "picture, .png (default: the scene's name with -pixel.png, here)");
+    command->add_option("--json", a.json, "file for the same as JSON");
+    command->add_option("--top-lights", a.top_lights, "lights, or groups of them, that are listed")
+        ->check(whole(1, 320))
+        ->capture_default_str();
+    command
+        ->add_option("--light-samples", a.options.light_samples, "light samples per pixel sample")
+        ->check(whole(1, 65536))
+        ->capture_default_str();
+    command->add_option("--spp", a.options.spp, "pixel samples to learn from")
+        ->check(whole(1, 1 << 20))
+        ->capture_default_str();
+    command->add_option("--seed", a.options.seed, "of the random numbers")
+        ->check(whole(0, largest_uint))
+        ->capture_default_str();
+    command->add_option_function<std::string>(
+        "--memory", [&a](const std::string& text) { a.options.memory = parse_bytes(text); },
+        "most memory on the device, such as 512M (default: half of it, at most 2G)");
+    command->footer(
+        "\nRenders the image with sampler adaptive, then reports its state at the pixel's centre.\n"
+        "\nExamples:\n"
+        "  manylight inspect scene.glb --pixel 320,200\n"
+        "  manylight inspect scene.glb --pixel 320,200 --top-lights 8 -o why.png --json "
+        "why.json\n");
+    command->callback([&run, arguments] { run = [arguments] { return run_inspect(*arguments); }; });
 }
 
 void add_verify(CLI::App& app, std::function<int()>& run) {
@@ -285,6 +342,7 @@ int run_program(int argc, char** argv) {
     app.footer("\n'manylight COMMAND --help' tells more, with examples.\n");
     std::function<int()> run;
     add_render(app, run);
+    add_inspect(app, run);
     add_verify(app, run);
     add_bench(app, run);
     add_scene_command(app, run);

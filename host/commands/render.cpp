@@ -249,6 +249,9 @@ int run_render(const RenderArguments& arguments) {
     stats["seconds"]["load"] = load_seconds;
     stats["seconds"]["build"] = build_seconds;
     stats["seconds"]["total"] = seconds_since(start);
+    if (arguments.top_lights > 0)
+        stats["top_lights"] =
+            report_top_lights(loaded, arguments.top_lights, options.seed, arguments.quiet);
     write_files(arguments, images, result, stats, make_metadata(parameters, stats));
     if (!arguments.quiet) {
         print_summary(options, result, seconds_since(start));

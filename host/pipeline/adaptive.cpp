@@ -60,10 +60,24 @@ void Adaptive::draw(const Tiles& tiles, const PixelSample& sample, uint light_sa
     fresh_ = false;
 }
 
+TileKnowledge Adaptive::knowledge(uint tile) const {
+    const float samples = samples_of_round(light_samples_);
+    TileKnowledge out{{}, {}, {samples, factor_ * samples, exposure_}, rounds_for(light_samples_)};
+    const std::size_t begin = std::size_t{tile} * CUT_CAPACITY;
+    out.cut = cuts_.nodes.download(begin, cuts_.sizes.download(tile, 1)[0]);
+    const std::vector<float> roots =
+        visibility_.roots.download(begin * CELLS_PER_TILE, CUT_CAPACITY * CELLS_PER_TILE);
+    for (std::size_t slot = 0; slot < out.cut.size(); ++slot)
+        for (std::size_t cell = 0; cell < CELLS_PER_TILE; ++cell)
+            out.roots.push_back(roots[(cell / 16 * CUT_CAPACITY + slot) * 16 + cell % 16]);
+    return out;
+}
+
 // Returns whether to go on.
 bool Adaptive::pass_over(const Tiles& tiles, Pass pass, const PixelSample& sample,
                          uint light_samples, const Buffer<Surface>& surfaces, Estimates& estimates,
                          const std::function<bool(const Pass&)>& done) {
+    light_samples_ = light_samples;
     const uint rounds = rounds_for(light_samples);
     const float samples = samples_of_round(light_samples);
     pass.packets = static_cast<uint>(packets_per_pixel(light_samples));

@@ -7,6 +7,14 @@
 
 namespace manylight {
 
+/// What sampler adaptive knows of a tile, and how it would draw a pixel sample's next pass.
+struct TileKnowledge {
+    std::vector<uint> cut;     // [slot] node of the light tree
+    std::vector<float> roots;  // [64 * slot + cell] root of V^, cells in Morton order
+    Budget budget;             // of one round
+    uint rounds;               // of draws, whose mean is taken
+};
+
 /// Sampler adaptive on a batch of tiles: pixels in interleaved passes, each of which learns from
 /// the shadow rays of those before it.
 class Adaptive {
@@ -23,6 +31,9 @@ class Adaptive {
     void draw(const Tiles& tiles, const PixelSample& sample, uint light_samples,
               const Buffer<Surface>& surfaces, Estimates& estimates,
               const std::function<bool(const Pass&)>& done);
+
+    /// What is known of a tile of the batch, after draw().
+    [[nodiscard]] TileKnowledge knowledge(uint tile) const;
 
     /// Bytes on the device for each tile, and besides.
     [[nodiscard]] static constexpr std::size_t tile_bytes() {
@@ -49,6 +60,7 @@ class Adaptive {
     Visibility visibility_;
     uint light_count_;
     unsigned width_;
+    uint light_samples_ = 1;  // of the last draw
     bool fresh_ = true;  // nothing was learned yet
     float factor_ = 0;   // see Budget; for one draw on average
     float exposure_ = 0;

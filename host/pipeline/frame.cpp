@@ -314,6 +314,8 @@ ErrorEstimate Frame::estimate_error() {
                                      stages_->image.weights.download());
 }
 
+TileKnowledge Frame::knowledge(uint tile) const { return stages_->adaptive->knowledge(tile); }
+
 void Frame::keep_image() {
     result_.image = Image(options_.width, options_.height, {"R", "G", "B"});
     const std::vector<float4> sums = stages_->image.sums.download();

@@ -9,6 +9,7 @@
 #include "output/error_estimate.hpp"
 #include "output/image.hpp"
 #include "output/progress.hpp"
+#include "pipeline/adaptive.hpp"
 #include "pipeline/plan.hpp"
 #include "scene/scene.hpp"
 #include "stages/gbuffer.hpp"
@@ -44,6 +45,13 @@ class Frame {
 
     /// To be called once, after prepare().
     [[nodiscard]] FrameResult render(Progress& progress);
+
+    /// The lights' tree, where the sampler uses one; after prepare().
+    [[nodiscard]] const LightTree& tree() const { return tree_; }
+
+    /// What sampler adaptive has learned of a tile of the last batch, after render(); the scene has
+    /// lights.
+    [[nodiscard]] TileKnowledge knowledge(uint tile) const;
 
   private:
     struct Stages;

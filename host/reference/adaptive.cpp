@@ -370,8 +370,8 @@ std::vector<PixelDraws> draw_nodes(const LightTree& tree, const Scene& scene, co
             // Close to where a draw begins, but for nodes that are passed exactly.
             const double whole = std::round(reached);
             if (whole > 0 && std::abs(reached - whole) < blur) d.uncertain = true;
-            for (int k = 0; k < static_cast<int>(reached); ++k)
-                d.draws.push_back({list[i].slot, list[i].node, share});
+            d.nodes.push_back({list[i].slot, list[i].node, share, weights[i]});
+            for (int k = 0; k < static_cast<int>(reached); ++k) d.draws.push_back(d.nodes.back());
             position = reached - std::floor(reached);
         }
     }

@@ -50,11 +50,13 @@ struct TileRays {
 
 struct Drawn {
     uint slot, node;
-    double share;  // how often it is expected to be drawn
+    double share;   // how often it is expected to be drawn
+    double weight;  // luminance of its estimate x root of V^, cd/m2
 };
 
 /// What a pixel draws.
 struct PixelDraws {
+    std::vector<Drawn> nodes;  // all that it chooses from, in the trees' order
     std::vector<Drawn> draws;
     glm::dvec3 control{0};  // sum of V^ x estimate over all nodes, cd/m2
     double variance = 0;    // of the luminance, for one draw

@@ -49,6 +49,7 @@ class Loader {
     Scene load() {
         for (const tinygltf::Material& material : model_.materials) add_material(material);
         scene_.materials.push_back(default_material());
+        scene_.material_names.emplace_back();
         visit_nodes();
         note_what_is_not_rendered();
         if (!has_normals_) scene_.vertex_normals.clear();
@@ -76,6 +77,7 @@ class Loader {
         check_brightness(m.emission,
                          fmt::format("materials[{}]: emission", scene_.materials.size()));
         scene_.materials.push_back(m);
+        scene_.material_names.push_back(in.name);
     }
 
     void check_brightness(const glm::vec3& rgb, const std::string& where) const {
@@ -177,6 +179,8 @@ class Loader {
             light.axis.w = 0;
         }
         scene_.lights.push_back(light);
+        const std::string& name = model_.nodes[node].name;
+        scene_.light_names.push_back(name.empty() ? in.name : name);
     }
 
     void add_mesh(int index, const glm::dmat4& to_world) {

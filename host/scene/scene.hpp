@@ -46,7 +46,9 @@ struct Scene {
     std::vector<std::uint32_t> indices;     // [3 * triangle + corner] into vertices
     std::vector<std::uint32_t> triangle_materials;  // [triangle] into materials
     std::vector<Material> materials;
+    std::vector<std::string> material_names;  // [material], as in the file; may be empty
     std::vector<Light> lights;
+    std::vector<std::string> light_names;  // likewise, of the file's own lights, which come first
     std::vector<View> views;
     std::vector<std::string> warnings;       // what the file holds and is not rendered
     std::optional<unsigned> emitter_points;  // the file's own wish, see gltf.hpp

@@ -1,0 +1,220 @@
+// SPDX-License-Identifier: MIT
+#include "pipeline/inspect.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "reference/adaptive.hpp"
+#include "reference/gbuffer.hpp"
+#include "reference/tiles.hpp"
+
+namespace manylight {
+namespace {
+
+constexpr double control = 0.8;  // as in kernels/samplers/adaptive.cl
+constexpr std::size_t most_points = 256;
+constexpr std::size_t most_rays = std::size_t{1} << 18;
+
+bool has_area(const Light& light) {
+    const auto kind = static_cast<LightKind>(light.position.w);
+    return kind == LIGHT_TRIANGLE || kind == LIGHT_QUAD;
+}
+
+// Evaluates lights at one point.
+class Truth {
+  public:
+    Truth(const LightTree& tree, const reference::Tracer& tracer, const reference::Point& point)
+        : tree_(tree), tracer_(tracer), point_(point) {
+        const std::size_t points = most_rays / std::max<std::size_t>(tree.lights.size(), 1);
+        points_ = static_cast<uint>(std::clamp<std::size_t>(points, 1, most_points));
+    }
+
+    // Of the lights of a node, drawn child by child as the sampler does.
+    struct Sum {
+        glm::dvec3 value{0};  // cd/m2
+        double square = 0;    // expected, of the luminance of light / probability
+        uint facing = 0;
+        uint seen = 0;
+    };
+    void add_node(uint node, double probability, Sum& sum) const {
+        if (tree_.nodes[node].count == 1) return add_light(node, probability, sum);
+        const uint children[] = {node + 1, node + 2 * tree_.nodes[node + 1].count};
+        double estimates[2];
+        for (int i = 0; i < 2; ++i)
+            estimates[i] =
+                reference::luminance(reference::node_estimate(tree_, children[i], point_));
+        const double both = estimates[0] + estimates[1];
+        for (int i = 0; i < 2; ++i)
+            add_node(children[i], both > 0 ? probability * estimates[i] / both : 0, sum);
+    }
+
+    [[nodiscard]] uint points() const { return points_; }
+
+  private:
+    void add_light(uint node, double probability, Sum& sum) const {
+        const Light& light = tree_.lights[tree_.nodes[node].first];
+        const uint count = has_area(light) ? points_ : 1;
+        const double part = 1.0 / count;
+        bool facing = false;
+        bool seen = false;
+        for (uint i = 0; i < count; ++i) {
+            // Roberts' R2 sequence.
+            const glm::dvec2 u = glm::fract(
+                0.5 + static_cast<double>(i) * glm::dvec2(0.7548776662466927, 0.5698402909980532));
+            const reference::Unshadowed term =
+                reference::unshadowed(point_.surface, point_.material(), point_.camera, light, u);
+            if (term.value == glm::dvec3(0)) continue;
+            facing = true;
+            if (tracer_.occluded(term.shadow)) continue;
+            seen = true;
+            sum.value += part * term.value;
+            if (probability > 0)
+                sum.square += part * std::pow(reference::luminance(term.value), 2) / probability;
+        }
+        sum.facing += facing;
+        sum.seen += seen;
+    }
+
+    const LightTree& tree_;
+    const reference::Tracer& tracer_;
+    const reference::Point& point_;
+    uint points_;
+};
+
+// The variance of the sum of what systematically drawn nodes add: node i is drawn
+// floor(u + reached[i]) - floor(u + reached[i - 1]) times, u uniform in [0, 1).
+double systematic_variance(const std::vector<double>& shares, const std::vector<double>& values) {
+    std::vector<double> reached(shares.size());
+    std::partial_sum(shares.begin(), shares.end(), reached.begin());
+    std::vector<double> starts = {0, 1};  // between which the same nodes are drawn
+    for (const double r : reached) starts.push_back(std::ceil(r) - r);
+    std::ranges::sort(starts);
+    double mean = 0;
+    double square = 0;
+    for (std::size_t k = 0; k + 1 < starts.size(); ++k) {
+        const double length = starts[k + 1] - starts[k];
+        const double u = starts[k] + length / 2;
+        double sum = 0;
+        double before = 0;
+        for (std::size_t i = 0; i < shares.size(); ++i) {
+            const double after = std::floor(u + reached[i]);
+            sum += (after - before) * values[i];
+            before = after;
+        }
+        mean += length * sum;
+        square += length * sum * sum;
+    }
+    return std::max(square - mean * mean, 0.0);
+}
+
+// A node's part in the variance: that of its number of draws x the squared distance of what a draw
+// adds from the mean (Hajek, "Asymptotic Theory of Rejective Sampling with Varying Probabilities",
+// 1964), and what is within. The mean itself counts where the number of all draws varies.
+void set_noise(const std::vector<double>& shares, const std::vector<double>& values,
+               const std::vector<double>& within, PixelReport& out) {
+    const auto spread = [](double share) {
+        const double rest = share - std::floor(share);
+        return rest * (1 - rest);
+    };
+    double all = 0;
+    double mean = 0;
+    for (std::size_t i = 0; i < shares.size(); ++i) {
+        all += spread(shares[i]);
+        mean += spread(shares[i]) * values[i];
+    }
+    if (all > 0) mean /= all;
+    out.count_noise = spread(std::accumulate(shares.begin(), shares.end(), 0.0)) * mean * mean;
+    double sum = out.count_noise;
+    for (std::size_t i = 0; i < shares.size(); ++i) {
+        out.nodes[i].noise = spread(shares[i]) * std::pow(values[i] - mean, 2) + within[i];
+        sum += out.nodes[i].noise;
+    }
+    if (sum == 0) return;
+    out.count_noise /= sum;
+    for (InspectedNode& node : out.nodes) node.noise /= sum;
+}
+
+// The 16 pixels that are drawn together with a pixel: the same place of its quadrant's cells.
+struct Group {
+    std::vector<Surface> surfaces;
+    std::vector<reference::DrawnPixel> pixels;
+    std::size_t own;
+    std::size_t cell;  // of the tile
+};
+
+Group find_group(const Scene& scene, const reference::Tracer& tracer, const Camera& camera,
+                 const Tiles& tiles, glm::uvec2 pixel, const TileKnowledge& knowledge) {
+    const std::size_t item = reference::item_of(tiles, pixel.x, pixel.y);
+    Group out{std::vector<Surface>(16), {}, item / 16 % 16, item / 16 % CELLS_PER_TILE};
+    for (std::size_t cell = 0; cell < 16; ++cell) {
+        const glm::uvec2 at = item_pixel(tiles, item / 256 * 256 + 16 * cell + item % 16);
+        Surface& surface = out.surfaces[cell];
+        surface.position.w = -1;
+        if (at.x < tiles.width && at.y < tiles.height)
+            surface = reference::gbuffer(scene, tracer, camera, tiles, at.x, at.y, false, 0, 0);
+        reference::DrawnPixel& drawn = out.pixels.emplace_back();
+        drawn.surface = surface.position.w >= 0 ? &surface : nullptr;
+        drawn.start = 0;
+        for (std::size_t slot = 0; slot < knowledge.cut.size(); ++slot)
+            drawn.roots.push_back(knowledge.roots[64 * slot + out.cell / 16 * 16 + cell]);
+    }
+    return out;
+}
+
+}  // namespace
+
+double PixelReport::draws() const {
+    double sum = 0;
+    for (const InspectedNode& node : nodes) sum += node.draws;
+    return sum;
+}
+
+PixelReport inspect_pixel(const Scene& scene, const LightTree& tree, const Camera& camera,
+                          const Tiles& tiles, glm::uvec2 pixel, const TileKnowledge& knowledge) {
+    const reference::Tracer tracer(scene);
+    const Group group = find_group(scene, tracer, camera, tiles, pixel, knowledge);
+    PixelReport out;
+    out.pixel = pixel;
+    out.tile = pixel.y / tiles.size * tiles.columns + pixel.x / tiles.size;
+    out.surface = group.surfaces[group.own];
+    if (!out.hit()) return out;
+    out.cut_nodes = static_cast<uint>(knowledge.cut.size());
+    for (const uint node : knowledge.cut) out.cut_lights += tree.nodes[node].count == 1;
+
+    const std::vector<reference::Drawn> choices =
+        reference::draw_nodes(tree, scene, camera, knowledge.cut, group.pixels,
+                              knowledge.budget)[group.own]
+            .nodes;
+    const reference::Point point{scene, camera, out.surface};
+    const Truth truth(tree, tracer, point);
+    out.area_points = truth.points();
+    std::vector<double> shares;
+    std::vector<double> values;  // of a draw: what it adds to the pixel, on average
+    std::vector<double> within;  // variance of what a node's draws add, by the choice of a light
+    for (const reference::Drawn& choice : choices) {
+        Truth::Sum sum;
+        truth.add_node(choice.node, 1, sum);
+        const double root = group.pixels[group.own].roots[choice.slot];
+        const double contribution = reference::luminance(sum.value);
+        const double expected = control * root * choice.weight;  // V^ x estimate
+        shares.push_back(choice.share);
+        values.push_back(choice.share > 0 ? (contribution - expected) / choice.share : 0);
+        within.push_back(choice.share > 0
+                             ? std::max(sum.square - contribution * contribution, 0.0) /
+                                   choice.share
+                             : 0);
+        out.radiance += sum.value;
+        out.nodes.push_back({choice.node, choice.weight, root * root,
+                             knowledge.rounds * choice.share, contribution, sum.facing, sum.seen,
+                             0});
+    }
+    out.variance =
+        (systematic_variance(shares, values) + std::accumulate(within.begin(), within.end(), 0.0)) /
+        knowledge.rounds;
+
+    set_noise(shares, values, within, out);
+    return out;
+}
+
+}  // namespace manylight

@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: MIT
+#include "pipeline/top_lights.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <unordered_map>
+
+#include "reference/gbuffer.hpp"
+#include "reference/random.hpp"
+#include "reference/samples.hpp"
+#include "stages/tiles.hpp"
+
+namespace manylight {
+namespace {
+
+constexpr unsigned most_points = 4096;
+constexpr unsigned samples = 16;
+constexpr uint dimension = 0xfffffff0u;  // of random numbers, apart from those of the samplers
+
+// A point of each of a grid of equal rectangles, as square as may be.
+std::vector<glm::dvec2> stratified_points(unsigned width, unsigned height, uint seed) {
+    const double scale = std::sqrt(
+        std::min(1.0, most_points / (static_cast<double>(width) * static_cast<double>(height))));
+    const auto columns = std::max(1u, static_cast<unsigned>(width * scale));
+    const auto rows =
+        std::max(1u, std::min(static_cast<unsigned>(height * scale), most_points / columns));
+    std::vector<glm::dvec2> points;
+    for (unsigned y = 0; y < rows; ++y)
+        for (unsigned x = 0; x < columns; ++x) {
+            const auto bits = reference::random_bits(y * columns + x, 0, dimension, seed);
+            points.emplace_back((x + reference::unit_fraction(bits[0])) * width / columns,
+                                (y + reference::unit_fraction(bits[1])) * height / rows);
+        }
+    return points;
+}
+
+// What lights give at the image's points.
+class Points {
+  public:
+    Points(const Scene& scene, const Camera& camera, unsigned width, unsigned height, uint seed)
+        : scene_(scene), camera_(camera), tracer_(scene), seed_(seed) {
+        const Tiles tiles = all_tiles(width, height, 32);
+        for (const glm::dvec2& at : stratified_points(width, height, seed)) {
+            const reference::Ray ray = reference::primary_ray(camera, tiles, at);
+            surfaces_.push_back(reference::surface_at(scene, ray, tracer_.closest_hit(ray)));
+        }
+    }
+
+    [[nodiscard]] std::size_t size() const { return surfaces_.size(); }
+    [[nodiscard]] std::size_t rays() const { return rays_; }
+    [[nodiscard]] const Surface& surface(std::size_t p) const { return surfaces_[p]; }
+    [[nodiscard]] const Camera& camera() const { return camera_; }
+
+    [[nodiscard]] std::array<uint, 4> random(std::size_t p, uint number) const {
+        return reference::random_bits(static_cast<uint>(p), number, dimension + 1, seed_);
+    }
+
+    // Luminance that a point of a light gives at point p of the image, cd/m2.
+    [[nodiscard]] double luminance(std::size_t p, std::size_t light, const glm::dvec2& u) {
+        const Surface& s = surfaces_[p];
+        const reference::Unshadowed term = reference::unshadowed(s, scene_.materials[s.material],
+                                                                 camera_, scene_.lights[light], u);
+        if (term.value == glm::dvec3(0)) return 0;
+        ++rays_;
+        return tracer_.occluded(term.shadow) ? 0 : reference::luminance(term.value);
+    }
+
+  private:
+    const Scene& scene_;
+    const Camera& camera_;
+    reference::Tracer tracer_;
+    uint seed_;
+    std::vector<Surface> surfaces_;
+    std::size_t rays_ = 0;
+};
+
+glm::dvec2 on_light(const std::array<uint, 4>& bits) {
+    return {reference::unit_fraction(bits[1]), reference::unit_fraction(bits[2])};
+}
+
+// [point] what all lights give there, estimated from draws, and [light] what those drawn give in
+// all.
+std::pair<std::vector<double>, std::unordered_map<uint, double>> draw(Points& points,
+                                                                      const Scene& scene) {
+    const LightTree tree = build_light_tree(scene.lights);
+    reference::Tables tables;
+    tables.tree = &tree;
+    std::vector<double> totals(points.size(), 0);
+    std::unordered_map<uint, double> by_light;
+    for (std::size_t p = 0; p < points.size(); ++p) {
+        if (points.surface(p).position.w < 0) continue;
+        for (uint i = 0; i < samples; ++i) {
+            const auto bits = points.random(p, i);
+            const reference::Choice choice = reference::choose_lighttree(
+                tables, {scene, points.camera(), points.surface(p)},
+                {p, i, samples, bits, static_cast<uint>(scene.lights.size())});
+            if (choice.weight == 0) continue;
+            const double value = choice.weight * points.luminance(p, choice.light, on_light(bits));
+            totals[p] += value;
+            if (value > 0) by_light[choice.light] += value;
+        }
+    }
+    return {std::move(totals), std::move(by_light)};
+}
+
+// The first `count` lights by what they give.
+std::vector<uint> largest(const std::unordered_map<uint, double>& by_light, std::size_t count) {
+    std::vector<std::pair<double, uint>> all;
+    for (const auto& [light, value] : by_light) all.emplace_back(-value, light);
+    std::ranges::sort(all);
+    std::vector<uint> out;
+    for (std::size_t i = 0; i < std::min(count, all.size()); ++i) out.push_back(all[i].second);
+    return out;
+}
+
+double dot(const std::vector<double>& a, const std::vector<double>& b) {
+    return std::inner_product(a.begin(), a.end(), b.begin(), 0.0);
+}
+
+}  // namespace
+
+TopLights find_top_lights(const Scene& scene, const Camera& camera, unsigned width, unsigned height,
+                          unsigned count, unsigned seed) {
+    Points points(scene, camera, width, height, seed);
+    TopLights out;
+    out.points = static_cast<unsigned>(points.size());
+    const auto n = static_cast<double>(points.size());
+    std::vector<uint> candidates;
+    std::vector<double> totals(points.size(), 0);
+    if (scene.lights.size() > 2 * std::size_t{count}) {
+        out.light_samples = samples;
+        std::unordered_map<uint, double> by_light;
+        std::tie(totals, by_light) = draw(points, scene);
+        candidates = largest(by_light, 2 * std::size_t{count});
+    } else {
+        candidates.resize(scene.lights.size());
+        std::iota(candidates.begin(), candidates.end(), 0u);
+    }
+    std::vector<std::vector<double>> values;  // [candidate][point]
+    for (std::size_t i = 0; i < candidates.size(); ++i) {
+        std::vector<double>& own = values.emplace_back(points.size(), 0);
+        for (std::size_t p = 0; p < points.size(); ++p) {
+            if (points.surface(p).position.w < 0) continue;
+            const auto bits = points.random(p, samples + static_cast<uint>(i));
+            own[p] = points.luminance(p, candidates[i], on_light(bits));
+            if (out.light_samples == 0) totals[p] += own[p];
+        }
+    }
+    out.shadow_rays = points.rays();
+    const double total = std::accumulate(totals.begin(), totals.end(), 0.0);
+    out.luminance = total / n;
+    for (std::size_t i = 0; i < candidates.size() && total > 0; ++i) {
+        const std::vector<double>& own = values[i];
+        const double share = std::accumulate(own.begin(), own.end(), 0.0) / total;
+        // Of a ratio of means: the deviations of own - share x total.
+        const double squares =
+            dot(own, own) - 2 * share * dot(own, totals) + share * share * dot(totals, totals);
+        const auto lit = std::ranges::count_if(own, [](double v) { return v > 0; });
+        out.lights.push_back({candidates[i], share, std::sqrt(std::max(squares, 0.0)) / total,
+                              static_cast<double>(lit) / n});
+    }
+    std::ranges::stable_sort(out.lights, std::greater(), &TopLight::share);
+    if (out.lights.size() > count) out.lights.resize(count);
+    return out;
+}
+
+}  // namespace manylight
