@@ -8,6 +8,7 @@
 #include "pipeline/adaptive.hpp"
 #include "pipeline/aov.hpp"
 #include "stages/accumulate.hpp"
+#include "stages/reflections.hpp"
 #include "stages/samples.hpp"
 
 namespace manylight {
@@ -34,6 +35,7 @@ struct Frame::Stages {
     GBufferStage gbuffer;
     std::optional<SampleStage> samples;  // either of these two
     std::optional<Adaptive> adaptive;
+    std::optional<ReflectionStage> reflections;
     AccumulateStage accumulate;
     std::optional<Clustering> clustering;
     Arguments tables;          // what the sampler draws from
@@ -78,6 +80,7 @@ void Frame::prepare() {
     }
     DeviceScene uploaded = upload_scene(device_, scene_, bvh_, camera_, tree ? &tree_ : nullptr);
     if (options_.hide_emitters) uploaded.emission["HAS_EMISSION"] = 0;
+    if (!options_.reflections) uploaded.shading["HAS_REFLECTIONS"] = 0;
     stages_ = std::make_shared<Stages>(device_, uploaded);
     Stages& s = *stages_;
     if (sampler_.table == Table::cuts)
@@ -85,6 +88,7 @@ void Frame::prepare() {
                            std::max(light_samples_, 1u));
     else
         s.samples.emplace(device_, s.scene, sampler_.kernel_file, items);
+    if (uploaded.reflections && options_.reflections) s.reflections.emplace(device_, s.scene);
     s.surfaces = device_.allocate<Surface>(items);
     if (plan_.centres)
         s.centres = options_.jitters() ? device_.allocate<Surface>(items) : s.surfaces;
@@ -195,6 +199,7 @@ void Frame::sample(const Tiles& batch, Progress& progress) {
             s.samples->draw(batch, sample, light_samples_, s.surfaces, s.tables, s.estimates,
                             count);
         }
+        if (s.reflections) s.reflections->add(batch, sample, s.surfaces, s.estimates.sums);
         s.accumulate.add(batch, s.surfaces, s.estimates.sums, s.image);
     }
     device_.finish();
