@@ -3,6 +3,7 @@
 // every pixel and for the image's mean, corrected for the number of pixels.
 #include <cmath>
 
+#include "reference/gbuffer.hpp"
 #include "support.hpp"
 
 namespace manylight {
@@ -113,6 +114,72 @@ test::TestScene small(const std::string& name) {
     return scene;
 }
 
+// A floor of metal on the left and of polished plastic, alpha 0.02, on the right, under lamps of
+// one and of two cells; or with a box between them and the plastic's normals bent.
+test::TestScene polished(float metal_roughness, bool occluded) {
+    return test::make_scene(
+        [&](GltfWriter& out) {
+            Mesh left;
+            left.add_quad({-2, 0, 2}, {2, 0, 0}, {0, 0, -4});
+            out.add_mesh("left", left, out.add_material({0.8f, 0.7f, 0.6f}, 1, metal_roughness));
+            Mesh right;
+            right.add_quad({0, 0, 2}, {2, 0, 0}, {0, 0, -4});
+            if (occluded)
+                for (const float x : {0.f, 0.3f, 0.3f, 0.f})
+                    right.normals.push_back(glm::normalize(glm::vec3(x, 1, 0)));
+            out.add_mesh("right", right, out.add_material({0.4f, 0.3f, 0.5f}, 0, 0.14f));
+            Mesh box;
+            if (occluded) {
+                box.add_box({-0.1f, 0.6f, -0.6f}, {0.4f, 0.3f, 0.2f}, 0.5f);
+                out.add_mesh("box", box, out.add_diffuse(glm::vec3(0.5f)));
+            }
+            Mesh lamps;
+            lamps.add_quad({-0.7f, 1.2f, -1}, {0.25f, 0, 0}, {0, 0, 0.2f});
+            lamps.add_quad({0.2f, 1, -1.1f}, {0.45f, 0, 0}, {0, 0.15f, 0.2f});
+            out.add_mesh("lamps", lamps, out.add_emitter({6, 5, 4}));
+            out.add_camera("front", {0, 1, 1.4f}, {0, 0, -0.1f}, 0.7f, 1.6f);
+        },
+        16, 10);
+}
+
+// The image of the polished floor by quadrature: the whole BRDF over a fine grid on each lamp.
+Image exact_image(const test::TestScene& scene) {
+    constexpr int steps = 80;
+    const reference::Tracer tracer(scene.scene);
+    const Tiles tiles = all_tiles(scene.width, scene.height, 16);
+    Image image(scene.width, scene.height, {"R", "G", "B"});
+    for (uint y = 0; y < scene.height; ++y)
+        for (uint x = 0; x < scene.width; ++x) {
+            const Surface surface =
+                reference::gbuffer(scene.scene, tracer, scene.camera, tiles, x, y, false, 0, 0);
+            const glm::dvec3 position(surface.position);
+            const glm::dvec3 normal(surface.normal);
+            const glm::dvec3 wo = reference::direction_to_camera(scene.camera, position);
+            glm::dvec3 sum(0);
+            for (const Light& light : scene.scene.lights) {
+                const glm::dvec3 u(light.axis);
+                const glm::dvec3 v(light.edge);
+                for (int i = 0; i < steps * steps; ++i) {
+                    const glm::dvec3 d = glm::dvec3(light.position) - position +
+                                         u * ((i % steps + 0.5) / steps) +
+                                         v * ((i / steps + 0.5) / steps);
+                    const double distance = glm::length(d);
+                    const glm::dvec3 wi = d / distance;
+                    const double emitted = -glm::dot(wi, glm::cross(u, v)) / (steps * steps);
+                    if (emitted <= 0) continue;
+                    sum +=
+                        reference::brdf(scene.scene.materials[surface.material], normal, wi, wo) *
+                        glm::dvec3(light.emission) *
+                        (glm::dot(normal, wi) * emitted / (distance * distance));
+                }
+            }
+            for (int c = 0; c < 3; ++c)
+                image.values[3 * (std::size_t{y} * scene.width + x) + c] =
+                    static_cast<float>(sum[c]);
+        }
+    return image;
+}
+
 }  // namespace
 
 TEST(statistics, tails_of_the_distributions) {
@@ -205,6 +272,58 @@ TEST(statistics, the_papers_sampler_is_biased) {
             EXPECT_LT(s.mean, 1e-6) << sampler.name;
             EXPECT_LT(s.bias, -0.001) << sampler.name;
         }
+    }
+}
+
+// Light samples and reflected rays together, against the exact image: with a lobe far narrower than
+// a lamp, and with one about as wide.
+TEST(statistics, reflections_are_unbiased) {
+    const test::TestScene scene = polished(0.08f, false);
+    ASSERT_EQ(scene.scene.lights.size(), 3u);
+    Moments exact;
+    exact.add(luminances(exact_image(scene)));
+    FOR_EACH_DEVICE(device)
+    for (const auto& [sampler, light_samples] :
+         {std::pair("exhaustive", 1u), {"lighttree", 1u}, {"adaptive", 2u}}) {
+        SCOPED_TRACE(sampler);
+        RenderOptions options = options_for(sampler, light_samples);
+        options.hide_emitters = true;
+        const Statistics s = judge(render_seeds(device, scene, options, 150), exact, scene);
+        EXPECT_GT(s.smallest_pixel, significance);
+        EXPECT_GT(s.mean, significance);
+    }
+}
+
+// Where light samples alone make fireflies.
+TEST(statistics, reflections_lower_the_variance) {
+    const test::TestScene scene = polished(0.04f, false);
+    FOR_EACH_DEVICE(device) {
+        double variance[2] = {};
+        for (const bool reflections : {false, true}) {
+            RenderOptions options = options_for("lighttree", 4);
+            options.hide_emitters = true;
+            options.reflections = reflections;
+            const Moments found = render_seeds(device, scene, options, 20);
+            for (std::size_t i = 0; i + 1 < found.sum.size(); ++i)
+                variance[reflections] += found.variance(i);
+        }
+        EXPECT_LT(variance[1], variance[0] / 4);
+    }
+}
+
+// The same against light samples alone where something is in between, and normals are smooth.
+TEST(statistics, reflections_are_hidden_as_lights_are) {
+    const test::TestScene scene = polished(0.16f, true);
+    FOR_EACH_DEVICE(device) {
+        RenderOptions options = options_for("exhaustive", 1);
+        options.hide_emitters = true;
+        options.reflections = false;
+        const Moments alone = render_seeds(device, scene, options, 200);
+        options.sampler = "adaptive";
+        options.reflections = true;
+        const Statistics s = judge(render_seeds(device, scene, options, 150), alone, scene);
+        EXPECT_GT(s.smallest_pixel, significance);
+        EXPECT_GT(s.mean, significance);
     }
 }
 

@@ -169,6 +169,8 @@ void add_render(CLI::App& app, std::function<int()>& run) {
     command->add_flag("--pixel-centre", o.pixel_centre, "all pixel samples at the pixel's centre");
     command->add_flag("--hide-emitters", o.hide_emitters,
                       "show emissive surfaces black: what is left is what they light");
+    command->add_flag("!--no-reflections", o.reflections,
+                      "glossy reflections of area lights by light samples alone, for comparison");
     command
         ->add_option("--exposure", arguments->exposure,
                      "stops by which a .png is brighter than the scene (default: automatic)")

@@ -78,6 +78,7 @@ json make_parameters(const RenderOptions& o, const LoadedScene& loaded, const Fr
         {"seed", o.seed},
         {"pixel_centre", !o.jitters()},
         {"hide_emitters", o.hide_emitters},
+        {"reflections", o.reflections},
         {"width", o.width},
         {"height", o.height},
         {"tile_size", o.clusters.tile_size},

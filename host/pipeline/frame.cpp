@@ -8,6 +8,7 @@
 #include "pipeline/adaptive.hpp"
 #include "pipeline/aov.hpp"
 #include "stages/accumulate.hpp"
+#include "stages/reflections.hpp"
 #include "stages/samples.hpp"
 
 namespace manylight {
@@ -37,6 +38,7 @@ struct Frame::Stages {
     GBufferStage gbuffer;
     std::optional<SampleStage> samples;  // either of these two
     std::optional<Adaptive> adaptive;
+    std::optional<ReflectionStage> reflections;
     AccumulateStage accumulate;
     std::optional<Clustering> clustering;
     Arguments tables;          // what the sampler draws from
@@ -75,8 +77,8 @@ float Frame::weight_of(uint i) const {
     return static_cast<float>(samples_of(i)) / static_cast<float>(std::max(samples_of(0), 1u));
 }
 
-// Positions in the pixel are stratified over samples. What the error is estimated from has to be
-// independent: the two of a pair then belong to two such sequences.
+// Positions in the pixel, and reflections, are stratified over samples. What the error is estimated
+// from has to be independent: the two of a pair then belong to two such sequences.
 PixelSample Frame::position_of(PixelSample sample) const {
     if (!options_.estimates_error()) return sample;
     const uint other = sample.index % 2 == 1 ? 0x9e3779b9u : 0u;
@@ -100,6 +102,7 @@ void Frame::prepare() {
     }
     DeviceScene uploaded = upload_scene(device_, scene_, bvh_, camera_, tree ? &tree_ : nullptr);
     if (options_.hide_emitters) uploaded.emission["HAS_EMISSION"] = 0;
+    if (!options_.reflections) uploaded.shading["HAS_REFLECTIONS"] = 0;
     stages_ = std::make_shared<Stages>(device_, uploaded, pixels, options_.estimates_error());
     Stages& s = *stages_;
     if (sampler_.table == Table::cuts)
@@ -107,6 +110,7 @@ void Frame::prepare() {
                            options_.most_samples());
     else
         s.samples.emplace(device_, s.scene, sampler_.kernel_file, items);
+    if (uploaded.reflections && options_.reflections) s.reflections.emplace(device_, s.scene);
     s.surfaces = device_.allocate<Surface>(items);
     if (plan_.centres)
         s.centres = options_.jitters() ? device_.allocate<Surface>(items) : s.surfaces;
@@ -291,17 +295,19 @@ void Frame::sample(const Visit& visit, Progress& progress) {
         done_[visit.number] = i + 1;
         if (s.adaptive && count > 0) {
             if (i == first && visit.fresh) s.adaptive->start(batch, s.surfaces, options_.seed);
+            bool complete = true;
             s.adaptive->draw(batch, sample, count, s.surfaces, s.estimates, [&](const Pass& pass) {
-                add(pass);
+                if (!s.reflections) add(pass);
                 progress_by(pass_pixels(pass) * count);
-                return !may_stop || seconds_left() > 0;
+                return complete = !may_stop || seconds_left() > 0;
             });
-        } else {
-            if (s.samples)
-                s.samples->draw(batch, sample, count, s.surfaces, s.tables, s.estimates,
-                                progress_by);
-            add({});
+            if (!s.reflections || !complete) continue;
+        } else if (s.samples) {
+            s.samples->draw(batch, sample, count, s.surfaces, s.tables, s.estimates, progress_by);
         }
+        if (s.reflections)
+            s.reflections->add(batch, position_of(sample), s.surfaces, s.estimates.sums);
+        add({});
         device_.finish();
         seconds_per_sample = seconds_since(begun) / std::max(count, 1u);
     }

@@ -77,7 +77,7 @@ Plan make_plan(const DeviceInfo& device, const Scene& scene, const WideBvh& bvh,
     plan.scene_bytes = bytes_of(bvh.nodes) + bytes_of(bvh.blocks) + bytes_of(scene.vertices) +
                        bytes_of(scene.vertex_normals) + bytes_of(scene.indices) +
                        bytes_of(scene.triangle_materials) + bytes_of(scene.materials) +
-                       bytes_of(scene.lights);
+                       bytes_of(scene.lights) + bytes_of(scene.cell_areas);
     if (sampler.uses_tree()) plan.scene_bytes += 2 * sizeof(LightNode) * lights;
     plan.image_bytes = std::size_t{options.width} * options.height *
                        ImageSum::pixel_bytes(options.estimates_error());

@@ -20,6 +20,7 @@ struct RenderOptions {
     unsigned height = 512;
     bool pixel_centre = false;   // all pixel samples at the pixel's centre; always with spp 1
     bool hide_emitters = false;  // emitters give light but are black
+    bool reflections = true;     // false: all by light samples, without stage reflections
     ClusterOptions clusters;
     std::size_t memory = 0;  // bytes on the device; 0: half of it, at most 2 GiB
     std::vector<std::string> aovs;

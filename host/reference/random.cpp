@@ -51,12 +51,18 @@ uint step_bits(uint bits, uint i) {
 
 double unit_fraction(uint bits) { return (bits >> 8) / 16777216.0; }
 
+// Scrambling works on mirrored digits.
+uint owen_scrambled(uint value, uint seed) { return mirrored(laine_karras(mirrored(value), seed)); }
+
+// The first dimension is the mirrored index.
+glm::dvec2 sobol_point(uint index, uint x_seed, uint y_seed) {
+    return {unit_fraction(owen_scrambled(mirrored(index), x_seed)),
+            unit_fraction(owen_scrambled(sobol_second(index), y_seed))};
+}
+
 glm::dvec2 pixel_position(uint pixel, uint pixel_sample, uint seed) {
     const auto scramble = random_bits(pixel, 0, 0xffffffffu, seed);
-    // Scrambling works on mirrored digits; the first dimension is the mirrored index.
-    const uint x = mirrored(laine_karras(pixel_sample, scramble[0]));
-    const uint y = mirrored(laine_karras(mirrored(sobol_second(pixel_sample)), scramble[1]));
-    return {unit_fraction(x), unit_fraction(y)};
+    return sobol_point(pixel_sample, scramble[0], scramble[1]);
 }
 
 }  // namespace manylight::reference

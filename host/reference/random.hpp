@@ -19,9 +19,14 @@ namespace manylight::reference {
 /// In [0, 1): the top 24 bits as a fraction.
 [[nodiscard]] double unit_fraction(uint bits);
 
-/// Where in its pixel, [0, 1)^2, a pixel sample lies: Sobol's first two dimensions, each with
-/// nested uniform scrambling by Laine and Karras' hash as given by Burley ("Practical Hash-based
+/// Nested uniform scrambling by Laine and Karras' hash as given by Burley ("Practical Hash-based
 /// Owen Scrambling", JCGT 9:4, 2020).
+[[nodiscard]] uint owen_scrambled(uint value, uint seed);
+
+/// Point `index`, in [0, 1)^2, of Sobol's first two dimensions, each Owen-scrambled.
+[[nodiscard]] glm::dvec2 sobol_point(uint index, uint x_seed, uint y_seed);
+
+/// Where in its pixel, [0, 1)^2, a pixel sample lies: the Sobol point of its own number.
 [[nodiscard]] glm::dvec2 pixel_position(uint pixel, uint pixel_sample, uint seed);
 
 }  // namespace manylight::reference

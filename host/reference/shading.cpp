@@ -28,6 +28,7 @@ struct Emission {
     glm::dvec3 target;   // end of the shadow ray
     glm::dvec3 light;    // illuminance at normal incidence, lx
     bool infinite = false;
+    double solid_angle = 0;  // of a light with area, sr
 };
 
 double range_window(double distance, double range) {
@@ -91,8 +92,12 @@ Emission quad(const Light& light, const glm::dvec3& position, const glm::dvec2& 
     const glm::dvec3 e2(light.edge);
     const glm::dvec3 n = glm::cross(e1, e2);
     const double area = glm::length(n);
-    return lambertian(position, glm::dvec3(light.position) + u.x * e1 + u.y * e2, n / area,
-                      glm::dvec3(light.emission) * area, light.edge.w, light.axis.w != 0);
+    // With radiance 1, what is received is the solid angle.
+    Emission e = lambertian(position, glm::dvec3(light.position) + u.x * e1 + u.y * e2, n / area,
+                            glm::dvec3(area), light.edge.w, light.axis.w != 0);
+    e.solid_angle = e.light.x;
+    e.light *= glm::dvec3(light.emission);
+    return e;
 }
 
 // Half a parallelogram.
@@ -101,6 +106,7 @@ Emission triangle(const Light& light, const glm::dvec3& position, glm::dvec2 u) 
     if (static_cast<float>(u.x) + static_cast<float>(u.y) > 1) u = 1.0 - u;
     Emission e = quad(light, position, u);
     e.light /= 2;
+    e.solid_angle /= 2;
     return e;
 }
 
@@ -126,7 +132,7 @@ Emission emission(const Light& light, const glm::dvec3& position, const glm::dve
 
 Unshadowed shade(const glm::dvec3& position, const Surface& surface, const Material& material,
                  const Camera& camera, const Light& light, const glm::dvec2& u) {
-    const glm::dvec3 normal(surface.normal);
+    const glm::dvec3 normal = glm::normalize(glm::dvec3(surface.normal));
     const glm::dvec3 geometric(surface.geometric);
     const Emission e = emission(light, position, u);
     Unshadowed out;
@@ -134,8 +140,10 @@ Unshadowed shade(const glm::dvec3& position, const Surface& surface, const Mater
     if (e.light == glm::dvec3(0)) return out;
     const double cosine = glm::dot(normal, e.towards);
     if (cosine <= 0 || glm::dot(geometric, e.towards) <= 0) return out;
-    out.value =
-        brdf(material, normal, e.towards, direction_to_camera(camera, position)) * e.light * cosine;
+    const Brdf f = split_brdf(material, normal, e.towards, direction_to_camera(camera, position));
+    const double share =
+        reflects(surface, material, camera) ? light_share(f.density, e.solid_angle) : 1;
+    out.value = (f.diffuse + f.specular * share) * e.light * cosine;
     out.shadow.origin = position + geometric * static_cast<double>(surface.geometric.w);
     out.shadow.direction = e.infinite ? e.towards : e.target - out.shadow.origin;
     if (!e.infinite) out.shadow.end = 1;
@@ -144,22 +152,41 @@ Unshadowed shade(const glm::dvec3& position, const Surface& surface, const Mater
 
 }  // namespace
 
-glm::dvec3 brdf(const Material& material, const glm::dvec3& normal, const glm::dvec3& wi,
+Brdf split_brdf(const Material& material, const glm::dvec3& normal, const glm::dvec3& wi,
                 const glm::dvec3& wo) {
+    Brdf f;
     const double n_l = glm::dot(normal, wi);
-    if (n_l <= 0) return glm::dvec3(0);
     const double n_v = std::max(std::abs(glm::dot(normal, wo)), 1e-4);
     const glm::dvec3 h = glm::normalize(wi + wo);
-    const double lobe = microfacet_distribution(material.roughness, glm::dot(normal, h)) *
-                        smith_visibility(material.roughness, n_l, n_v);
+    const double distribution = microfacet_distribution(material.roughness, glm::dot(normal, h));
+    const double a2 = double{material.roughness} * material.roughness;
+    // Heitz (2018), eq. 17: G1 D / (4 N.V), where G1 is 2 N.V / (N.V + root).
+    if (glm::dot(normal, h) > 0)
+        f.density = distribution / (2 * (n_v + std::sqrt(a2 + (1 - a2) * n_v * n_v)));
+    if (n_l <= 0) return f;
+    const double lobe = distribution * smith_visibility(material.roughness, n_l, n_v);
     const double schlick = std::pow(std::max(1 - std::abs(glm::dot(wo, h)), 0.0), 5);
     const glm::dvec3 base(material.base_color);
     const double f90 = material.specular;
     const double f0 = 0.04 * f90;
     const double dielectric_fresnel = f0 + (f90 - f0) * schlick;
-    const glm::dvec3 dielectric = glm::mix(base / pi, glm::dvec3(lobe), dielectric_fresnel);
-    const glm::dvec3 metal = lobe * (base + (1.0 - base) * schlick);
-    return glm::mix(dielectric, metal, static_cast<double>(material.base_color.w));
+    const double metallic = material.base_color.w;
+    f.diffuse = (1 - metallic) * (1 - dielectric_fresnel) * base / pi;
+    f.specular =
+        lobe * glm::mix(glm::dvec3(dielectric_fresnel), base + (1.0 - base) * schlick, metallic);
+    return f;
+}
+
+glm::dvec3 brdf(const Material& material, const glm::dvec3& normal, const glm::dvec3& wi,
+                const glm::dvec3& wo) {
+    const Brdf f = split_brdf(material, normal, wi, wo);
+    return f.diffuse + f.specular;
+}
+
+bool reflects(const Surface& surface, const Material& material, const Camera& camera) {
+    const glm::dvec3 wo = direction_to_camera(camera, glm::dvec3(surface.position));
+    return (material.base_color.w > 0 || material.specular > 0) &&
+           material.roughness < REFLECTING_ALPHA && glm::dot(glm::dvec3(surface.normal), wo) > 1e-4;
 }
 
 glm::dvec3 direction_to_camera(const Camera& camera, const glm::dvec3& position) {

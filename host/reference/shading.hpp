@@ -6,15 +6,35 @@
 
 namespace manylight::reference {
 
-/// glTF 2.0 appendix B with KHR_materials_specular's factor, 1/sr; unit directions away from the
-/// surface.
+/// glTF 2.0 appendix B with KHR_materials_specular's factor; unit directions away from the surface.
+struct Brdf {
+    glm::dvec3 diffuse{0}, specular{0};  // Lambert's part and the GGX lobe's, 1/sr
+    double density = 0;  // of wi, 1/sr, where wo is mirrored at one of the microfacets that it sees
+};
+[[nodiscard]] Brdf split_brdf(const Material& material, const glm::dvec3& normal,
+                              const glm::dvec3& wi, const glm::dvec3& wo);
+
+/// Both parts.
 [[nodiscard]] glm::dvec3 brdf(const Material& material, const glm::dvec3& normal,
                               const glm::dvec3& wi, const glm::dvec3& wo);
 
 /// Unit direction from a point to the camera.
 [[nodiscard]] glm::dvec3 direction_to_camera(const Camera& camera, const glm::dvec3& position);
 
-/// Direct light of one light, or of its point u in [0, 1)^2, without visibility.
+/// Whether stage reflections takes part in what the lobe reflects of area lights.
+[[nodiscard]] bool reflects(const Surface& surface, const Material& material, const Camera& camera);
+
+/// The light samples' share of what the lobe reflects of a point of a light's cell (area x cosine /
+/// squared distance = `solid_angle`, sr), where reflected directions have `density`, 1/sr: the
+/// power heuristic (Veach and Guibas, "Optimally Combining Sampling Techniques for Monte Carlo
+/// Rendering", 1995) for one sample of each.
+[[nodiscard]] inline double light_share(double density, double solid_angle) {
+    const double light = 1 / solid_angle;
+    return solid_angle > 0 ? light * light / (light * light + density * density) : 1;
+}
+
+/// Direct light of one light, or of its point u in [0, 1)^2, without visibility and without what is
+/// left to stage reflections.
 struct Unshadowed {
     glm::dvec3 value;  // f Le G of paper eq. (1), cd/m2
     Ray shadow;        // the segment to be free

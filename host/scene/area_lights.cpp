@@ -29,6 +29,7 @@ struct Shape {
     glm::dvec3 corner, u, v;  // the sides at the corner; it faces cross(u, v)
     float offset;             // as an emitter's
     std::size_t emitter;      // of the shape's radiance
+    std::size_t second;       // the other of a parallelogram's emitters
 };
 
 // An edge of an emitter, as it winds; a neighbour that faces the same way has its reverse.
@@ -115,8 +116,9 @@ Shape join(const Emitter& a, int i, const Emitter& b, int j) {
     const glm::dvec3 to(a.vertices[(i + 1) % 3]);
     const glm::dvec3 top(a.vertices[(i + 2) % 3]);
     const glm::dvec3 bottom(b.vertices[(j + 2) % 3]);
-    Shape shape{LIGHT_QUAD, {}, (from - top + bottom - to) / 2.0, (to - top + bottom - from) / 2.0,
-                0,          0};
+    Shape shape{
+        LIGHT_QUAD, {}, (from - top + bottom - to) / 2.0, (to - top + bottom - from) / 2.0, 0,
+        0,          0};
     shape.corner = (from + to + top + bottom) / 4.0 - (shape.u + shape.v) / 2.0;
     // No point of the triangles is farther from it than their corners are from its corners.
     const double distance = glm::distance(shape.corner, top);
@@ -143,7 +145,7 @@ std::vector<Shape> find_shapes(const std::vector<Emitter>& emitters) {
     std::vector<Shape> shapes;
     for (std::size_t i = 0; i < emitters.size(); ++i) {
         const Emitter& e = emitters[i];
-        shapes.push_back({LIGHT_TRIANGLE, e.vertices[0], e.edge1(), e.edge2(), e.offset, i});
+        shapes.push_back({LIGHT_TRIANGLE, e.vertices[0], e.edge1(), e.edge2(), e.offset, i, i});
     }
     for (const bool diagonals : {true, false}) {
         EdgeTable table(emitters);
@@ -158,6 +160,7 @@ std::vector<Shape> find_shapes(const std::vector<Emitter>& emitters) {
                 Shape joined = join(emitters[other], j, emitters[i], k);
                 if (!is_parallelogram(joined, emitters[other], j)) continue;
                 joined.emitter = other;
+                joined.second = i;
                 shapes[other] = joined;
                 shapes[i].kind = gone;
             }
@@ -199,15 +202,17 @@ double choose_side(const std::vector<Shape>& shapes) {
     return side;
 }
 
-void add_cells(std::vector<Light>& lights, const Shape& s, const Emitter& e, double side) {
+void add_cells(AreaLights& out, const Shape& s, const Emitter& e, double side) {
     const glm::uvec2 n = cells_along(s, side);
     const glm::dvec3 u = s.u / static_cast<double>(n.x);
     const glm::dvec3 v = s.v / static_cast<double>(n.y);
     const auto add = [&](const glm::dvec3& corner, double sign) {
-        lights.push_back({float4(corner, s.kind), float4(sign * u, e.both_sides ? 1 : 0),
-                          float4(sign * v, s.offset), float4(e.radiance, 0)});
+        out.lights.push_back({float4(corner, s.kind), float4(sign * u, e.both_sides ? 1 : 0),
+                              float4(sign * v, s.offset), float4(e.radiance, 0)});
     };
     const bool triangle = s.kind == LIGHT_TRIANGLE;
+    const auto area = static_cast<float>(glm::length(glm::cross(u, v)) / (triangle ? 2 : 1));
+    out.cell_areas[s.emitter] = out.cell_areas[s.second] = area;
     for (unsigned j = 0; j < n.y; ++j)
         for (unsigned i = 0; i < (triangle ? n.x - j : n.x); ++i) {
             const glm::dvec3 corner =
@@ -220,12 +225,13 @@ void add_cells(std::vector<Light>& lights, const Shape& s, const Emitter& e, dou
 
 }  // namespace
 
-std::vector<Light> make_area_lights(const std::vector<Emitter>& emitters) {
+AreaLights make_area_lights(const std::vector<Emitter>& emitters) {
     const std::vector<Shape> shapes = find_shapes(emitters);
     const double side = choose_side(shapes);
-    std::vector<Light> lights;
-    for (const Shape& s : shapes) add_cells(lights, s, emitters[s.emitter], side);
-    return lights;
+    AreaLights out;
+    out.cell_areas.resize(emitters.size());
+    for (const Shape& s : shapes) add_cells(out, s, emitters[s.emitter], side);
+    return out;
 }
 
 }  // namespace manylight

@@ -14,8 +14,9 @@ std::vector<Emitter> find_emitters(const Scene& scene) {
     for (std::size_t t = 0; t < scene.triangle_count(); ++t) {
         const Material& material = scene.materials[scene.triangle_materials[t]];
         if (glm::vec3(material.emission) == glm::vec3(0)) continue;
-        Emitter e{{}, material.emission, material.emission.w != 0, 0, 0, 0};
+        Emitter e{{}, material.emission, material.emission.w != 0, 0, 0, 0, 0};
         e.material = scene.triangle_materials[t];
+        e.triangle = static_cast<std::uint32_t>(t);
         glm::vec3 extent(0);
         for (int corner = 0; corner < 3; ++corner) {
             e.vertices[corner] = scene.vertices[scene.indices[3 * t + corner]];
@@ -112,8 +113,16 @@ void set_powers(std::vector<Light>& lights, const Bounds& bounds) {
 
 void add_emitters(Scene& scene, unsigned points) {
     const std::vector<Emitter> emitters = find_emitters(scene);
-    const std::vector<Light> lights =
-        points > 0 ? make_points(emitters, points) : make_area_lights(emitters);
+    std::vector<Light> lights;
+    if (points > 0) {
+        lights = make_points(emitters, points);
+    } else if (!emitters.empty()) {
+        AreaLights made = make_area_lights(emitters);
+        lights = std::move(made.lights);
+        scene.cell_areas.assign(scene.triangle_count(), 0.f);
+        for (std::size_t i = 0; i < emitters.size(); ++i)
+            scene.cell_areas[emitters[i].triangle] = made.cell_areas[i];
+    }
     scene.lights.insert(scene.lights.end(), lights.begin(), lights.end());
     set_powers(scene.lights, scene.bounds());
 }

@@ -40,6 +40,9 @@ Features find_features(const Scene& scene) {
         const Material& material = scene.materials[i];
         if (material.base_color.w > 0 || material.specular > 0) features.ggx = true;
         if (glm::vec3(material.emission) != glm::vec3(0)) features.emission = true;
+        if (material.base_color.w > 0 || material.specular > 0)
+            features.reflections |=
+                material.roughness < REFLECTING_ALPHA && !scene.cell_areas.empty();
     }
     features.smooth = !scene.vertex_normals.empty();
     return features;

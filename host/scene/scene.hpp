@@ -49,6 +49,8 @@ struct Scene {
     std::vector<std::string> material_names;  // [material], as in the file; may be empty
     std::vector<Light> lights;
     std::vector<std::string> light_names;  // likewise, of the file's own lights, which come first
+    std::vector<float> cell_areas;  // [triangle], m2, of each of the cells that its area light is
+                                    // cut to, 0 where it is none; empty if there are no area lights
     std::vector<View> views;
     std::vector<std::string> warnings;       // what the file holds and is not rendered
     std::optional<unsigned> emitter_points;  // the file's own wish, see gltf.hpp
@@ -63,6 +65,7 @@ struct Features {
     bool ggx = false;                   // a material is more than Lambert's
     bool smooth = false;                // a mesh has vertex normals
     bool emission = false;              // emitters can be seen
+    bool reflections = false;           // glossy materials reflect area lights
 };
 
 [[nodiscard]] Features find_features(const Scene& scene);
@@ -73,9 +76,9 @@ struct Features {
 }
 
 /// Adds the lights of a scene's emissive triangles and sets the power of every light. `points` 0:
-/// area lights (see make_area_lights()). Otherwise that many oriented points of equal power, spread
-/// over all emissive triangles by power (paper section 5); their total power, as luminance, is the
-/// triangles'. Triangles without area emit nothing.
+/// area lights (see make_area_lights()), and their cells' areas. Otherwise that many oriented
+/// points of equal power, spread over all emissive triangles by power (paper section 5); their
+/// total power, as luminance, is the triangles'. Triangles without area emit nothing.
 void add_emitters(Scene& scene, unsigned points);
 
 /// The camera of that name, or the first for an empty name; a scene without cameras is framed from

@@ -6,6 +6,7 @@ namespace manylight {
 AdaptiveStage::AdaptiveStage(Device& device, const DeviceScene& scene, std::size_t packets,
                              std::size_t pixels)
     : scene_(scene.arguments),
+      reflections_(scene.shading.at("HAS_REFLECTIONS") != 0),
       shadows_(device, scene, packets),
       drawn_(device.allocate<uint>(16 * packets)),
       shares_(device.allocate<float>(16 * packets)),
@@ -47,7 +48,7 @@ void AdaptiveStage::draw(const Tiles& tiles, const Pass& pass, const Budget& bud
         .set("start", uint{start})
         .set("estimates", estimates.sums);
     draw_.launch(pass_pixels(pass) / 16, arguments);
-    if (cuts.groups) aim_.launch(pass_pixels(pass), arguments);
+    if (cuts.groups || reflections_) aim_.launch(pass_pixels(pass), arguments);
     shadows_.trace(pass_pixels(pass) * pass.packets);
     add_.launch(pass_pixels(pass), arguments);
 }

@@ -47,6 +47,7 @@ class AdaptiveStage {
 
   private:
     Arguments scene_;
+    bool reflections_;
     ShadowStage shadows_;
     Kernel draw_;
     Kernel aim_;

@@ -45,6 +45,7 @@ DeviceScene upload_scene(Device& device, const Scene& scene, const WideBvh& bvh,
         .set("light_count", out.light_count);
     if (features.smooth)
         out.arguments.set("vertex_normals", device.upload(flat(scene.vertex_normals)));
+    if (features.reflections) out.arguments.set("cell_areas", device.upload(scene.cell_areas));
     if (tree)
         out.arguments.set("nodes", device.upload(tree->nodes))
             .set("root_count", static_cast<uint>(tree->roots.size()))
@@ -57,6 +58,8 @@ DeviceScene upload_scene(Device& device, const Scene& scene, const WideBvh& bvh,
     out.shading = out.traversal;
     out.shading.merge(kind_defines(features));
     out.shading["HAS_GGX"] = features.ggx;
+    out.shading["HAS_REFLECTIONS"] = features.reflections;
+    out.reflections = features.reflections;
     out.emission = {{"HAS_EMISSION", features.emission}};
     return out;
 }

@@ -79,6 +79,7 @@ std::vector<Check> Verifier::all() {
     const std::size_t half = (scene_.lights.size() + 1) / 2;
     const auto cut_size = static_cast<uint>(std::clamp<std::size_t>(half, 2, CUT_CAPACITY));
     for (Check& check : adaptive(cut_size)) checks.push_back(std::move(check));
+    checks.push_back(reflections());
     return checks;
 }
 

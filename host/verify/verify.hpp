@@ -55,6 +55,7 @@ class Verifier {
     [[nodiscard]] Check refinement();
     [[nodiscard]] Check pdf(const Sampler& sampler);
     [[nodiscard]] Check samples(const Sampler& sampler);
+    [[nodiscard]] Check reflections();
     [[nodiscard]] Check accumulate();
 
     /// Sampler adaptive with cuts of `cut_size` nodes at most: cuts, visibility, weights, samples.

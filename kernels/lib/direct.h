@@ -16,6 +16,7 @@ typedef struct Receiver {
     float3 geometric;
     float3 to_camera;
     float offset;
+    bool reflects;  // stage reflections takes part in what the GGX lobe reflects
     Material material;
 } Receiver;
 
@@ -30,14 +31,20 @@ static Receiver make_receiver(__global const Surface* surface, __global const Ma
     r.offset = surface->geometric.w;
     r.to_camera = direction_to_camera(camera, r.position);
     r.material = materials[surface->material];
+    r.reflects = false;
+#if HAS_REFLECTIONS
+    r.reflects = (r.material.base_color.w > 0.0f || r.material.specular > 0.0f) &&
+                 r.material.roughness < REFLECTING_ALPHA &&
+                 dot(r.normal, r.to_camera) > LEAST_COSINE;
+#endif
     return r;
 }
 
 // Where shadow rays start.
 static float3 shadow_origin(const Receiver* r) { return r->position + r->geometric * r->offset; }
 
-// f Le G, cd/m2, of a light (of its point u), without visibility; 0 if the light is behind the
-// surface. `shadow` gets the segment that has to be free.
+// f Le G, cd/m2, of a light (of its point u), without visibility and without what is left to stage
+// reflections; 0 if the light is behind the surface. `shadow` gets the segment that has to be free.
 static float3 unshadowed(const Receiver* r, __global const Light* light, float2 u, Ray* shadow) {
     const LightSample s = sample_light(light, r->position, u);
     const float cosine = dot(r->normal, s.direction);
@@ -45,7 +52,9 @@ static float3 unshadowed(const Receiver* r, __global const Light* light, float2 
     shadow->origin = shadow_origin(r);
     shadow->direction = s.infinite ? s.direction : s.target - shadow->origin;
     shadow->end = s.infinite ? INFINITY : 1.0f;
-    return brdf(r->material, r->normal, s.direction, r->to_camera) * s.emitted * cosine;
+    return brdf(r->material, r->normal, s.direction, r->to_camera,
+                r->reflects ? s.solid_angle : 0.0f) *
+           s.emitted * cosine;
 }
 
 #endif

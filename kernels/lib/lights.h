@@ -9,9 +9,10 @@
 
 // A light, or a point of it, as a surface point sees it.
 typedef struct LightSample {
-    float3 direction;  // unit, to the light
-    float3 target;     // where the shadow ray ends, unless the light is infinitely far
-    float3 emitted;    // Le and the light's part of G: illuminance at normal incidence, lx
+    float3 direction;   // unit, to the light
+    float3 target;      // where the shadow ray ends, unless the light is infinitely far
+    float3 emitted;     // Le and the light's part of G: illuminance at normal incidence, lx
+    float solid_angle;  // sr, by which `emitted` is Le; 0 for a light without area
     bool infinite;
 } LightSample;
 
@@ -20,6 +21,7 @@ static LightSample sample_towards(float3 position, float3 target) {
     s.target = target;
     s.direction = target - position;
     s.emitted = (float3)(0.0f);
+    s.solid_angle = 0.0f;
     s.infinite = false;
     return s;
 }
@@ -61,6 +63,7 @@ static LightSample light_directional(__global const Light* light, float3 positio
     s.direction = -light->axis.xyz;
     s.target = (float3)(0.0f);
     s.emitted = light->emission.xyz;
+    s.solid_angle = 0.0f;
     s.infinite = true;
     return s;
 }
@@ -68,20 +71,21 @@ static LightSample light_directional(__global const Light* light, float3 positio
 
 #if HAS_ORIENTED || HAS_TRIANGLE || HAS_QUAD
 // Intensity I along the normal gives I cos / d^2. `normal` may have any length, which scales;
-// shadow rays end `offset` before the emitter. Normalises the direction.
-static void emit_cosine(LightSample* s, float3 intensity, float3 normal, float offset,
-                        bool both_sides) {
+// shadow rays end `offset` before the emitter. Normalises the direction and returns cos / d^2.
+static float emit_cosine(LightSample* s, float3 intensity, float3 normal, float offset,
+                         bool both_sides) {
     const float squared = dot(s->direction, s->direction);
-    if (squared == 0.0f) return;
+    if (squared == 0.0f) return 0.0f;
     s->direction *= 1.0f / sqrt(squared);
     float cosine = -dot(s->direction, normal);
     if (cosine < 0.0f && both_sides) {
         cosine = -cosine;
         normal = -normal;
     }
-    if (cosine <= 0.0f) return;
+    if (cosine <= 0.0f) return 0.0f;
     s->emitted = intensity * (cosine / squared);
     s->target += normal * (offset / length(normal));
+    return cosine / squared;
 }
 #endif
 
@@ -100,8 +104,8 @@ static LightSample light_area(__global const Light* light, float3 position, floa
     const float3 axis = light->axis.xyz;
     const float3 edge = light->edge.xyz;
     LightSample s = sample_towards(position, light->position.xyz + axis * u.x + edge * u.y);
-    emit_cosine(&s, light->emission.xyz * share, cross(axis, edge), light->edge.w,
-                light->axis.w != 0.0f);
+    s.solid_angle = share * emit_cosine(&s, light->emission.xyz * share, cross(axis, edge),
+                                        light->edge.w, light->axis.w != 0.0f);
     return s;
 }
 #endif

@@ -52,6 +52,9 @@ static uint step_bits(uint bits, uint i) {
 // The dimension that shifts the systematic draws of a pass.
 #define RANDOM_DRAW_SHIFT 0xfffffffdu
 
+// The dimension that seeds the directions of stage reflections.
+#define RANDOM_REFLECTION 0xfffffffcu
+
 // A float in [0, 1) from the top 24 bits.
 static float unit_float(uint bits) { return (float)(bits >> 8) * 0x1p-24f; }
 
@@ -75,18 +78,28 @@ static uint owen_scramble(uint v, uint seed) {
     return reverse_bits(v);
 }
 
-// Where in its pixel a pixel sample lies, in [0, 1)^2: the first two dimensions of Sobol's
-// sequence, Owen-scrambled, so that every power of two of samples is stratified.
-static float2 pixel_position(uint pixel, uint pixel_sample, uint seed) {
-    const uint4 scramble = random_bits(pixel, 0u, RANDOM_PIXEL_POSITION, seed);
+// Point `index`, in [0, 1)^2, of the first two dimensions of Sobol's sequence, Owen-scrambled.
+static float2 sobol_point(uint index, uint2 scramble) {
     uint y = 0u;
     uint direction = 0x80000000u;
-    for (uint i = pixel_sample; i != 0u; i >>= 1) {
+    for (uint i = index; i != 0u; i >>= 1) {
         if (i & 1u) y ^= direction;
         direction ^= direction >> 1;
     }
-    return (float2)(unit_float(owen_scramble(reverse_bits(pixel_sample), scramble.x)),
+    return (float2)(unit_float(owen_scramble(reverse_bits(index), scramble.x)),
                     unit_float(owen_scramble(y, scramble.y)));
+}
+
+// Where in its pixel a pixel sample lies, in [0, 1)^2; every power of two of samples is stratified.
+static float2 pixel_position(uint pixel, uint pixel_sample, uint seed) {
+    return sobol_point(pixel_sample, random_bits(pixel, 0u, RANDOM_PIXEL_POSITION, seed).xy);
+}
+
+// The numbers, in [0, 1)^2, that a pixel sample's reflected direction is drawn from. Stratified
+// likewise, but in an order of its own (Burley's shuffling), independent of the position's.
+static float2 reflection_point(uint pixel, uint pixel_sample, uint seed) {
+    const uint4 bits = random_bits(pixel, 0u, RANDOM_REFLECTION, seed);
+    return sobol_point(owen_scramble(pixel_sample, bits.z), bits.xy);
 }
 
 #endif

@@ -256,6 +256,7 @@ KERNEL void adaptive_draw(Tiles tiles, Camera camera, Pass pass, Budget budget,
 #if HAS_GGX
     points.glossy = false;
 #endif
+    bool reflecting = false;
     int16 valid = (int16)(0);
     float16 position = (float16)(0.0f);
     const float shift = unit_float(
@@ -274,10 +275,12 @@ KERNEL void adaptive_draw(Tiles tiles, Camera camera, Pass pass, Budget budget,
             receiver.position = receiver.normal = receiver.to_camera = (float3)(1.0f);
             receiver.geometric = receiver.normal;
             receiver.offset = 0.0f;
+            receiver.reflects = false;
             receiver.material.base_color = (float4)(0.0f);
             receiver.material.roughness = 1.0f;
             receiver.material.specular = 0.0f;
         }
+        reflecting = reflecting || receiver.reflects;
         set_point(&points, cell, point_of(&receiver));
         const float3 origin = shadow_origin(&receiver);
         set_origin(&from, cell, origin, receiver.geometric);
@@ -314,7 +317,9 @@ KERNEL void adaptive_draw(Tiles tiles, Camera camera, Pass pass, Budget budget,
             add_color(&drawn_control, node_estimate_16(nodes + DRAWN_NODE(entry), lights, &points),
                       select((float16)(0.0f), factor, times > 0.0f));
             const uint node = DRAWN_NODE(entry);
-            const bool single = nodes[node].count == 1u;
+            const bool point = (entry & SINGLE_POINT) != 0u;
+            // What stage reflections shares is left to adaptive_aim().
+            const bool single = nodes[node].count == 1u && (point || !reflecting);
             const uint mark = (entry & ~SINGLE_POINT) | (single ? AIMED : 0u);
             for (float16 left = times; cells; cells = lanes_16(left > 0.0f)) {
                 left -= 1.0f;
@@ -322,7 +327,7 @@ KERNEL void adaptive_draw(Tiles tiles, Camera camera, Pass pass, Budget budget,
                 uint lit = 0u;
                 if (single) {
                     float16 u = (float16)(0.5f), v = u;
-                    if (!(entry & SINGLE_POINT))
+                    if (!point)
                         random_points(pixels, pixel_sample, RANDOM_DRAWS * pass.number + counts,
                                       seed, &u, &v);
                     d = direct_16(lights + nodes[node].first, nodes[node].kind, &points, &from, u,
@@ -388,9 +393,9 @@ static Descent descend(__global const LightNode* nodes, __global const Light* li
     return d;
 }
 
-// Draws a light for each drawn node of several, and its ray: draw i of pixel p is lane i % 16 of
-// packet pass.packets * p + i / 16; values as in lib/samples.h. One pixel of the pass per
-// work-item.
+// Draws a light for each drawn node whose ray is not made yet, and its ray: draw i of pixel p is
+// lane i % 16 of packet pass.packets * p + i / 16; values as in lib/samples.h. One pixel of the
+// pass per work-item.
 KERNEL void adaptive_aim(Tiles tiles, Camera camera, Pass pass, __global const Surface* surfaces,
                          __global const Material* materials, __global const Light* lights,
                          __global const LightNode* nodes, uint pixel_sample, uint seed,

@@ -20,6 +20,10 @@ SHARED_SIZE(Material, 48)
 /// Below this GGX alpha, single precision cannot resolve the lobe (1 - cos of its width is 1e-6).
 #define SMALLEST_ALPHA 1e-3f
 
+/// Below this GGX alpha, stage reflections takes part in what a material reflects of area lights.
+/// Above, its rays cost more than they gain (docs/reflections.md).
+#define REFLECTING_ALPHA 0.03f
+
 SHARED_END
 
 #endif

@@ -19,6 +19,8 @@ constexpr Builtin builtins[] = {
     {"glossy", "1000 coloured lights over a shiny floor", make_glossy},
     {"blinds", "192 lights behind slats and foliage, the sun among them", make_blinds},
     {"pinhole", "a bright lamp that lights a dim room through a hole of 4 cm", make_pinhole},
+    {"plates", "four lamps, small to large, mirrored by four metal plates, smooth to rough",
+     make_plates},
 };
 
 }  // namespace

@@ -23,7 +23,7 @@ struct Builtin {
     bool takes_mesh = false;
 };
 
-/// cornell, dragon, rooms, city, glossy, blinds, pinhole.
+/// cornell, dragon, rooms, city, glossy, blinds, pinhole, plates.
 [[nodiscard]] std::span<const Builtin> all_builtins();
 
 /// Throws InputError for a name that is not in the list or options that the scene does not take.
@@ -37,5 +37,6 @@ void make_city(GltfWriter& out, const BuiltinOptions& options);
 void make_glossy(GltfWriter& out, const BuiltinOptions& options);
 void make_blinds(GltfWriter& out, const BuiltinOptions& options);
 void make_pinhole(GltfWriter& out, const BuiltinOptions& options);
+void make_plates(GltfWriter& out, const BuiltinOptions& options);
 
 }  // namespace manylight

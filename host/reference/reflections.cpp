@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: MIT
+#include "reference/reflections.hpp"
+
+#include <algorithm>
+#include <glm/gtc/constants.hpp>
+
+#include "reference/random.hpp"
+
+namespace manylight::reference {
+namespace {
+
+constexpr double epsilon = std::numeric_limits<float>::epsilon();
+
+// What arrives along a ray of unit direction from the area light that it hits.
+glm::dvec3 reflected(const Scene& scene, const Camera& camera, const Surface& surface,
+                     const Ray& ray, const std::optional<Hit>& hit) {
+    const glm::dvec3 normal = glm::normalize(glm::dvec3(surface.normal));
+    const double cosine = glm::dot(normal, ray.direction);
+    if (cosine <= 0 || glm::dot(glm::dvec3(surface.geometric), ray.direction) <= 0 || !hit)
+        return glm::dvec3(0);
+    const double area = scene.cell_areas[hit->triangle];
+    if (area == 0) return glm::dvec3(0);
+    glm::dvec3 v[3];
+    for (int k = 0; k < 3; ++k)
+        v[k] = scene.vertices[scene.indices[3 * std::size_t{hit->triangle} + k]];
+    const glm::dvec3 face = glm::normalize(glm::cross(v[1] - v[0], v[2] - v[0]));
+    const double emitted = -glm::dot(face, ray.direction);
+    const float4& emission = scene.materials[scene.triangle_materials[hit->triangle]].emission;
+    if (emitted < 0 && emission.w == 0) return glm::dvec3(0);
+    const double solid_angle = area * std::abs(emitted) / (hit->t * hit->t);
+    const Material& material = scene.materials[surface.material];
+    const Brdf f = split_brdf(material, normal, ray.direction,
+                              direction_to_camera(camera, glm::dvec3(surface.position)));
+    return f.specular * cosine * (1 - light_share(f.density, solid_angle)) / f.density *
+           glm::dvec3(glm::vec3(emission));
+}
+
+}  // namespace
+
+glm::dvec3 sample_lobe(double alpha, const glm::dvec3& normal, const glm::dvec3& wo,
+                       const glm::dvec2& u) {
+    // A frame about the normal: Duff et al., "Building an Orthonormal Basis, Revisited" (JCGT 6:1,
+    // 2017).
+    const glm::dvec3& n = normal;
+    const double sign = std::copysign(1.0, n.z);
+    const double a = -1 / (sign + n.z);
+    const glm::dmat3 frame(glm::dvec3(1 + sign * n.x * n.x * a, sign * n.x * n.y * a, -sign * n.x),
+                           glm::dvec3(n.x * n.y * a, sign + n.y * n.y * a, -n.y), n);
+    const glm::dvec3 stretch(alpha, alpha, 1);
+    const glm::dvec3 viewer = glm::normalize(stretch * (glm::transpose(frame) * wo));
+    const double height = glm::mix(1.0, -viewer.z, u.y);  // of the cap of directions to the viewer
+    const double radius = std::sqrt(std::max(1 - height * height, 0.0));
+    const double phi = 2 * glm::pi<double>() * u.x;
+    const glm::dvec3 half =
+        viewer + glm::dvec3(radius * std::cos(phi), radius * std::sin(phi), height);
+    return -glm::reflect(wo, glm::normalize(frame * (stretch * half)));
+}
+
+glm::dvec2 reflection_point(uint pixel, uint pixel_sample, uint seed) {
+    const auto scramble = random_bits(pixel, 0, 0xfffffffcu, seed);
+    return sobol_point(owen_scrambled(pixel_sample, scramble[2]), scramble[0], scramble[1]);
+}
+
+Reflection reflection(const Scene& scene, const Tracer& tracer, const Camera& camera,
+                      const Surface& surface, uint pixel, uint pixel_sample, uint seed,
+                      bool judge) {
+    Reflection out;
+    if (surface.position.w < 0) return out;
+    const Material& material = scene.materials[surface.material];
+    const glm::dvec3 position(surface.position);
+    if (!reflects(surface, material, camera)) return out;
+    Ray ray;
+    ray.origin = position + glm::dvec3(surface.geometric) * double{surface.geometric.w};
+    ray.direction = sample_lobe(
+        double{material.roughness}, glm::normalize(glm::dvec3(surface.normal)),
+        direction_to_camera(camera, position), reflection_point(pixel, pixel_sample, seed));
+    const std::optional<Hit> hit = tracer.closest_hit(ray);
+    out.value = reflected(scene, camera, surface, ray, hit);
+    if (!judge) return out;
+    // Rounding of the origin, and of the direction: of a unit vector's parts.
+    double largest = 1;
+    for (int axis = 0; axis < 3; ++axis)
+        largest =
+            std::max({largest, std::abs(position[axis]), std::abs(double{camera.origin[axis]})});
+    // What the value comes from: cells of one material and area emit alike.
+    const auto source = [&](const std::optional<Hit>& h) {
+        return h ? std::pair(scene.triangle_materials[h->triangle], scene.cell_areas[h->triangle])
+                 : std::pair(~0u, 0.f);
+    };
+    for (Ray moved : Tracer::neighbours(ray, 16 * epsilon * largest)) {
+        moved.direction = glm::normalize(moved.direction);
+        const std::optional<Hit> other = tracer.closest_hit(moved);
+        const glm::dvec3 value = reflected(scene, camera, surface, moved, other);
+        const bool dark = value == glm::dvec3(0);
+        if (dark != (out.value == glm::dvec3(0)) || (!dark && source(other) != source(hit)))
+            out.borderline = true;
+        else
+            out.slack = std::max(out.slack, glm::length(value - out.value));
+    }
+    return out;
+}
+
+}  // namespace manylight::reference

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: MIT
+// Stage reflections: area lights as glossy surfaces reflect them, by one ray per pixel sample that
+// is drawn from the GGX lobe. It shares the lobe's light with the light samples by the power
+// heuristic (multiple importance sampling: Veach and Guibas, "Optimally Combining Sampling
+// Techniques for Monte Carlo Rendering", 1995); see lobe_share() in lib/brdf.h.
+#include "lib/direct.h"
+#include "lib/random.h"
+#include "lib/tiles.h"
+
+#if HAS_REFLECTIONS
+
+// Unit vectors that make a right-handed frame with unit vector n (Duff et al., "Building an
+// Orthonormal Basis, Revisited", JCGT 6:1, 2017).
+static void make_frame(float3 n, float3* tangent, float3* bitangent) {
+    const float sign = copysign(1.0f, n.z);
+    const float a = -1.0f / (sign + n.z);
+    const float b = n.x * n.y * a;
+    *tangent = (float3)(1.0f + sign * n.x * n.x * a, sign * b, -sign * n.x);
+    *bitangent = (float3)(b, sign + n.y * n.y * a, -n.y);
+}
+
+// A direction of the lobe's light, unit, with density lobe_density(): wo mirrored at a normal that
+// is drawn from those of the microfacets that wo sees (Heitz, "Sampling the GGX Distribution of
+// Visible Normals", JCGT 7:4, 2018), as a point of a spherical cap (Dupuy and Benyoub, "Sampling
+// Visible GGX Normals with Spherical Caps", 2023).
+static float3 sample_lobe(float alpha, float3 n, float3 wo, float2 u) {
+    float3 x, y;
+    make_frame(n, &x, &y);
+    const float3 stretched =
+        normalize((float3)(alpha * dot(wo, x), alpha * dot(wo, y), dot(wo, n)));
+    const float z = (1.0f - u.y) * (1.0f + stretched.z) - stretched.z;
+    const float sine = sqrt(max(1.0f - z * z, 0.0f));
+    const float phi = 2.0f * M_PI_F * u.x;
+    const float3 cap = stretched + (float3)(sine * cos(phi), sine * sin(phi), z);
+    const float3 h = normalize(x * (alpha * cap.x) + y * (alpha * cap.y) + n * cap.z);
+    return normalize(h * (2.0f * dot(wo, h)) - wo);
+}
+
+// Adds to estimates[item].rgb, cd/m2. cell_areas[triangle]: see Scene.
+KERNEL void reflections_add(Tiles tiles, Camera camera, BVH_PARAMETERS,
+                            __global const float* vertices, __global const uint* indices,
+                            __global const uint* triangle_materials,
+                            __global const Material* materials, __global const float* cell_areas,
+                            __global const Surface* surfaces, uint pixel_sample, uint seed,
+                            __global float4* estimates) {
+    const uint item = get_global_id(0);
+    if (!item_in_image(tiles, item) || surface_missed(surfaces + item)) return;
+    const Receiver r = make_receiver(surfaces + item, materials, camera);
+    if (!r.reflects) return;
+    const uint2 pixel = item_pixel(tiles, item);
+    const float2 u = reflection_point(pixel.y * tiles.width + pixel.x, pixel_sample, seed);
+    const float3 wi = sample_lobe(r.material.roughness, r.normal, r.to_camera, u);
+    if (dot(r.normal, wi) <= 0.0f || dot(r.geometric, wi) <= 0.0f) return;
+    const Ray ray = {shadow_origin(&r), wi, INFINITY};
+    const Hit hit = closest_hit(BVH_ARGUMENTS, ray);
+    const float area = hit.triangle == ~0u ? 0.0f : cell_areas[hit.triangle];
+    if (area == 0.0f) return;
+    __global const uint* corner = indices + 3 * hit.triangle;
+    const float3 v0 = vload3(corner[0], vertices);
+    const float3 face = cross(vload3(corner[1], vertices) - v0, vload3(corner[2], vertices) - v0);
+    const float cosine = -dot(wi, normalize(face));
+    const float4 emission = materials[triangle_materials[hit.triangle]].emission;
+    if (cosine < 0.0f && emission.w == 0.0f) return;
+    const float solid_angle = area * fabs(cosine) / (hit.t * hit.t);
+    const Material m = r.material;
+    const float n_in = dot(r.normal, wi);
+    const float3 h = normalize(wi + r.to_camera);
+    const float lobe = ggx_lobe(m.roughness, r.normal, h, n_in, dot(r.normal, r.to_camera));
+    const float density = lobe_density(lobe, m.roughness, n_in);
+    const float s = schlick(dot(r.to_camera, h));
+    const float3 fresnel =
+        (1.0f - m.base_color.w) * dielectric_fresnel(m, s) + m.base_color.w * metal_fresnel(m, s);
+    const float share = lobe_share(density, solid_angle);
+    estimates[item].xyz += fresnel * (lobe * n_in / density * share) * emission.xyz;
+}
+
+#endif
