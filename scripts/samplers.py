@@ -1,13 +1,14 @@
 # SPDX-License-Identifier: MIT
-"""The table of samplers.sh, which builds the program first.
+"""The tables of samplers.sh, which builds the program first.
 
 All images have half the scene's usual size and one or more pixel samples at the pixel's centre, and
 show what emitters light, not the emitters. Errors are relMSE against an image of all lights, or,
 where those are too many, a long run of sampler adaptive; the mean over seeds. Times are prepare +
 render of --stats: light tree, cuts and learning are in, loading, the BVH and compiling are not. The
-error of adaptive at the light tree's time is read between its own runs (log-log).
+error of a sampler at another one's time is read between its own runs (log-log).
 """
 import argparse
+import itertools
 import json
 import math
 import pathlib
@@ -77,8 +78,101 @@ def measure(scene, seeds, device):
                       "relmse": error[k]} for k in runs]}
 
 
+def worth(scenes, seeds, device):
+    table = {}
+    print("relMSE            4 light samples                 in the light tree's time for 16")
+    print("           lighttree  adaptive   ratio   seconds  lighttree  adaptive   ratio")
+    for scene in scenes:
+        row = table[scene.stem] = measure(scene, seeds, device)
+        same, equal = row["same_samples"], row["equal_time"]
+        print(f"{scene.stem:10} {same['lighttree']:9.4f} {same['adaptive']:9.5f} "
+              f"{same['lighttree'] / same['adaptive']:7.1f} {equal['seconds']:9.3f} "
+              f"{equal['lighttree']:10.4f} {equal['adaptive']:9.5f} "
+              f"{equal['lighttree'] / equal['adaptive']:7.1f}", flush=True)
+        if row["reference_error"]:
+            print(f"           (reference: {row['reference']}, its own relMSE "
+                  f"{row['reference_error']:.5f})")
+    return table
+
+
+def error_at(points, seconds):
+    """The error that a sampler of runs (seconds, relmse) has after `seconds`; none if it has none
+    so soon."""
+    best = []  # runs that no faster one is better than
+    for point in sorted(points):
+        if not best or point[1] < best[-1][1]:
+            best.append(point)
+    if seconds < best[0][0]:
+        return math.inf
+    before = max(i for i, p in enumerate(best) if p[0] <= seconds)
+    (t0, e0) = best[before]
+    if before + 1 == len(best):
+        return e0 * t0 / seconds
+    (t1, e1) = best[before + 1]
+    return e0 * math.exp(math.log(e1 / e0) / math.log(t1 / t0) * math.log(seconds / t0))
+
+
+def never_worse(scenes, seeds, device):
+    """Adaptive's error over that of the best other sampler in the same time."""
+    print("largest ratio of relMSE to the best other sampler's in the same time, over 1 to 64 light "
+          "samples and 1 to 16 spp")
+    table = {}
+    for scene in scenes:
+        make_reference(scene, device)
+        ladder = list(itertools.product((1, 4, 16, 64), (1, 4, 16)))
+        samplers = ("uniform", "power", "ris", "lighttree", "adaptive")
+        runs = {(name, *step): [] for name in samplers for step in ladder}
+        for name in samplers:
+            render(scene, name, 4, 1, 0, "image", device)  # compiles
+        for seed in range(1, seeds + 1):
+            for key, results in runs.items():
+                seconds = render(scene, *key, seed, "image", device)[0]
+                results.append((seconds, relmse("image", "reference")))
+        mean = {key: (statistics.median(r[0] for r in results),
+                      statistics.fmean(r[1] for r in results)) for key, results in runs.items()}
+        rows = []
+        for step in ladder:
+            seconds, error = mean["adaptive", *step]
+            others = {name: error_at([mean[name, *s] for s in ladder], seconds)
+                      for name in samplers[:-1]}
+            best = min(others, key=others.get)
+            if math.isfinite(others[best]):
+                rows.append((error / others[best], step, best))
+        table[scene.stem] = [{"ratio": r, "light_samples": step[0], "spp": step[1], "best": best}
+                             for r, step, best in rows]
+        ratio, step, best = max(rows)
+        print(f"{scene.stem:10} {ratio:7.3f}  ({step[0]} light samples, {step[1]} spp; {best}); "
+              f"median {statistics.median(r[0] for r in rows):.3f}", flush=True)
+    return table
+
+
+def scale(seeds, device):
+    """The time of a frame of city with more and more lights."""
+    print("lights    tree s  frame s   ratio")
+    table = []
+    for lights in (1000, 10_000, 100_000, 1_000_000):
+        scene = FOLDER / "scale.glb"
+        subprocess.run([PROGRAM, "scene", "city", "--lights", str(lights), "-o", scene], check=True,
+                       stdout=subprocess.DEVNULL)
+        runs = [render(scene, "adaptive", 4, 1, seed, "image", device)[1]["seconds"]
+                for seed in range(seeds + 1)][1:]  # the first one compiles
+        tree = statistics.median(r["prepare"] for r in runs)
+        frame = statistics.median(r["render"] for r in runs)
+        table.append({"lights": lights, "tree": tree, "frame": frame})
+        print(f"{lights:8} {tree:7.3f} {frame:8.3f} {frame / table[0]['frame']:7.2f}", flush=True)
+    subprocess.run([PROGRAM, "render", scene, "--quiet", "--width", "1920", "--height", "1080",
+                    "--memory", "2G", "--spp", "1", "-o", FOLDER / "image.exr", "--stats",
+                    FOLDER / "stats.json", *device], check=True)
+    stats = json.loads((FOLDER / "stats.json").read_text())
+    peak = stats["memory_bytes"]["device_peak"] / 2**20
+    print(f"1920 x 1080, {stats['lights']} lights, --memory 2G: {peak:.0f} MiB on the device, "
+          f"{stats['batches']} batch(es), {stats['seconds']['total']:.1f} s")
+    return table
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--table", choices=("worth", "never-worse", "scale"), default="worth")
     parser.add_argument("--scenes", type=pathlib.Path)
     parser.add_argument("--only", default="")
     parser.add_argument("--seeds", type=int, default=3)
@@ -93,22 +187,15 @@ def main():
             subprocess.run([PROGRAM, "scene", scene.stem, "-o", scene], check=True,
                            stdout=subprocess.DEVNULL)
     device = ["--device", arguments.device] if arguments.device else []
-    table = {}
-    print("relMSE            4 light samples                 in the light tree's time for 16")
-    print("           lighttree  adaptive   ratio   seconds  lighttree  adaptive   ratio")
-    for scene in scenes:
-        if arguments.only and scene.stem not in arguments.only.split(","):
-            continue
-        row = table[scene.stem] = measure(scene, arguments.seeds, device)
-        same, equal = row["same_samples"], row["equal_time"]
-        print(f"{scene.stem:10} {same['lighttree']:9.4f} {same['adaptive']:9.5f} "
-              f"{same['lighttree'] / same['adaptive']:7.1f} {equal['seconds']:9.3f} "
-              f"{equal['lighttree']:10.4f} {equal['adaptive']:9.5f} "
-              f"{equal['lighttree'] / equal['adaptive']:7.1f}", flush=True)
-        if row["reference_error"]:
-            print(f"           (reference: {row['reference']}, its own relMSE "
-                  f"{row['reference_error']:.5f})")
-    (FOLDER / "samplers.json").write_text(json.dumps(table, indent=2) + "\n")
+    if arguments.only:
+        scenes = [s for s in scenes if s.stem in arguments.only.split(",")]
+    if arguments.table == "never-worse":
+        table = never_worse(scenes, arguments.seeds, device)
+    elif arguments.table == "scale":
+        table = scale(arguments.seeds, device)
+    else:
+        table = worth(scenes, arguments.seeds, device)
+    (FOLDER / f"{arguments.table}.json").write_text(json.dumps(table, indent=2) + "\n")
 
 
 main()
