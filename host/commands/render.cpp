@@ -168,19 +168,19 @@ void write_files(const RenderArguments& arguments, const std::vector<std::string
 }
 
 // When rendering has to end for everything to be written in time.
-Clock::time_point deadline_of(Clock::time_point start, const RenderArguments& arguments,
+Clock::time_point deadline_of(const RenderArguments& arguments,
                               const std::vector<std::string>& images, const LoadedScene& loaded) {
-    // Seconds that encoding a pixel takes.
-    constexpr double exr = 60e-9;
-    constexpr double png = 60e-9;
+    // Seconds that encoding a pixel takes, of a layer where there are several.
+    constexpr double exr = 250e-9;
+    constexpr double png = 250e-9;
     const double pixels = static_cast<double>(loaded.width) * loaded.height;
-    double writing = 0.01;
+    double writing = 0.03;
     for (const std::string& image : images)
         writing += pixels * (image.ends_with(".exr")
                                  ? exr * static_cast<double>(1 + arguments.options.aovs.size())
                                  : png);
-    return start + std::chrono::duration_cast<Clock::duration>(
-                       std::chrono::duration<double>(arguments.seconds - writing));
+    return process_start() + std::chrono::duration_cast<Clock::duration>(
+                                 std::chrono::duration<double>(arguments.seconds - writing));
 }
 
 void print_summary(const RenderOptions& options, const FrameResult& result, double seconds) {
@@ -235,7 +235,7 @@ int run_render(const RenderArguments& arguments) {
     const WideBvh bvh =
         build_wide_bvh(loaded.scene, lanes, lanes, reach_of(loaded.scene, loaded.camera));
     const double build_seconds = seconds_since(build_start);
-    if (arguments.seconds > 0) options.deadline = deadline_of(start, arguments, images, loaded);
+    if (arguments.seconds > 0) options.deadline = deadline_of(arguments, images, loaded);
     Frame frame(device, loaded.scene, bvh, loaded.camera, options);
     if (!arguments.quiet) print_plan(loaded, frame.plan(), device.info());
     frame.prepare();
