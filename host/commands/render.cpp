@@ -171,8 +171,8 @@ void write_files(const RenderArguments& arguments, const std::vector<std::string
 Clock::time_point deadline_of(const RenderArguments& arguments,
                               const std::vector<std::string>& images, const LoadedScene& loaded) {
     // Seconds that encoding a pixel takes, of a layer where there are several.
-    constexpr double exr = 250e-9;
-    constexpr double png = 250e-9;
+    constexpr double exr = 450e-9;
+    constexpr double png = 450e-9;
     const double pixels = static_cast<double>(loaded.width) * loaded.height;
     double writing = 0.03;
     for (const std::string& image : images)
