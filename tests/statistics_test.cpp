@@ -105,6 +105,11 @@ RenderOptions options_for(std::string_view sampler, uint light_samples) {
 
 constexpr double significance = 1e-3;
 
+void expect_unbiased(const Statistics& s, double level = significance) {
+    EXPECT_GT(s.smallest_pixel, level);
+    EXPECT_GT(s.mean, level);
+}
+
 // A test scene at a size that many seeds are quick at.
 test::TestScene small(const std::string& name) {
     test::TestScene scene = test::scene_named(name);
@@ -207,11 +212,9 @@ TEST(statistics, unbiased_samplers_are_unbiased) {
                     fmt::format("{} on {}, {} light samples", sampler.name, name, light_samples));
                 const bool rare = sampler.table == Table::clusters && light_samples < 16;
                 const int seeds = name == "kinds" && rare ? 1500 : light_samples == 16 ? 100 : 200;
-                const Statistics s = judge(
+                expect_unbiased(judge(
                     render_seeds(device, scene, options_for(sampler.name, light_samples), seeds),
-                    reference, scene);
-                EXPECT_GT(s.smallest_pixel, significance);
-                EXPECT_GT(s.mean, significance);
+                    reference, scene));
             }
         }
     }
@@ -225,11 +228,9 @@ TEST(statistics, cuts_of_many_lights_are_unbiased) {
         for (const std::string_view sampler : {"lighttree", "adaptive"})
             for (const uint light_samples : {1u, 4u, 20u}) {
                 SCOPED_TRACE(fmt::format("{}, {} light samples", sampler, light_samples));
-                const Statistics s =
+                expect_unbiased(
                     judge(render_seeds(device, scene, options_for(sampler, light_samples), 200),
-                          reference, scene);
-                EXPECT_GT(s.smallest_pixel, significance);
-                EXPECT_GT(s.mean, significance);
+                          reference, scene));
             }
     }
 }
@@ -243,10 +244,7 @@ TEST(statistics, stopped_renders_are_unbiased) {
         RenderOptions options = options_for("adaptive", 0);
         options.spp = 64;
         options.target_error = 0.002;
-        const Statistics by_error =
-            judge(render_seeds(device, scene, options, 200), reference, scene);
-        EXPECT_GT(by_error.smallest_pixel, significance);
-        EXPECT_GT(by_error.mean, significance);
+        expect_unbiased(judge(render_seeds(device, scene, options, 200), reference, scene));
         options.target_error = 0;
         Moments by_time;
         for (options.seed = 0; options.seed < 200; ++options.seed) {
@@ -254,9 +252,7 @@ TEST(statistics, stopped_renders_are_unbiased) {
             by_time.add(luminances(test::render(device, scene, options).image));
         }
         // No two runs stop alike: one in a million may look biased by chance.
-        const Statistics s = judge(by_time, reference, scene);
-        EXPECT_GT(s.smallest_pixel, 1e-6);
-        EXPECT_GT(s.mean, 1e-6);
+        expect_unbiased(judge(by_time, reference, scene), 1e-6);
     }
 }
 
@@ -289,9 +285,7 @@ TEST(statistics, reflections_are_unbiased) {
         SCOPED_TRACE(sampler);
         RenderOptions options = options_for(sampler, light_samples);
         options.hide_emitters = true;
-        const Statistics s = judge(render_seeds(device, scene, options, 150), exact, scene);
-        EXPECT_GT(s.smallest_pixel, significance);
-        EXPECT_GT(s.mean, significance);
+        expect_unbiased(judge(render_seeds(device, scene, options, 150), exact, scene));
     }
 }
 
@@ -322,9 +316,7 @@ TEST(statistics, reflections_are_hidden_as_lights_are) {
         const Moments alone = render_seeds(device, scene, options, 200);
         options.sampler = "adaptive";
         options.reflections = true;
-        const Statistics s = judge(render_seeds(device, scene, options, 150), alone, scene);
-        EXPECT_GT(s.smallest_pixel, significance);
-        EXPECT_GT(s.mean, significance);
+        expect_unbiased(judge(render_seeds(device, scene, options, 150), alone, scene));
     }
 }
 
@@ -338,10 +330,8 @@ TEST(statistics, jittered_samples_are_unbiased) {
         RenderOptions defensive = options_for("contribution-defensive", 2);
         defensive.spp = 3;
         defensive.pixel_centre = false;
-        const Statistics s = judge(render_seeds(device, scene, defensive, 200),
-                                   render_seeds(device, scene, exhaustive, 20), scene);
-        EXPECT_GT(s.smallest_pixel, significance);
-        EXPECT_GT(s.mean, significance);
+        expect_unbiased(judge(render_seeds(device, scene, defensive, 200),
+                              render_seeds(device, scene, exhaustive, 20), scene));
     }
 }
 

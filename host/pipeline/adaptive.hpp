@@ -61,8 +61,8 @@ class Adaptive {
     uint light_count_;
     unsigned width_;
     uint light_samples_ = 1;  // of the last draw
-    bool fresh_ = true;  // nothing was learned yet
-    float factor_ = 0;   // see Budget; for one draw on average
+    bool fresh_ = true;       // nothing was learned yet
+    float factor_ = 0;        // see Budget; for one draw on average
     float exposure_ = 0;
 };
 

@@ -137,7 +137,7 @@ FrameResult Frame::render(Progress& progress) {
     else
         visit_all(options_.spp, 0, 1, progress);
     if (options_.estimates_error()) {
-        result_.error = estimate_error();
+        if (!result_.error) result_.error = estimate_error();
         for (auto& [name, layer] : result_.aovs)
             if (name == "error") layer = result_.error->pixels;
     } else {
@@ -156,7 +156,8 @@ void Frame::render_to_error(Progress& progress) {
     uint counted = 0;
     while (true) {
         visit_all(end, shown, share, progress);
-        const double error = estimate_error().relmse;
+        result_.error = estimate_error();
+        const double error = result_.error->relmse;
         const bool late = options_.deadline && Clock::now() >= *options_.deadline;
         if (error <= options_.target_error || end >= options_.spp || late) return;
         for (; counted < end; ++counted) weight += weight_of(counted);
@@ -328,8 +329,8 @@ void Frame::keep_image() {
     const std::vector<float> weights = stages_->image.weights.download();
     double rays = 0;
     double samples = 0;
-    const float first_weight = std::min(options_.spp, fewest_samples) * 1.f;
-    const float later_weight = weight_of(fewest_samples);
+    const auto first_weight = static_cast<float>(RenderOptions::first_samples);
+    const float later_weight = weight_of(RenderOptions::first_samples);
     for (std::size_t i = 0; i < sums.size(); ++i) {
         for (int c = 0; c < 3; ++c)
             result_.image.values[3 * i + c] = sums[i][c] / std::max(weights[i], 1e-30f);

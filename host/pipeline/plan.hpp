@@ -25,10 +25,12 @@ struct RenderOptions {
     std::size_t memory = 0;  // bytes on the device; 0: half of it, at most 2 GiB
     std::vector<std::string> aovs;
 
+    static constexpr uint first_samples = 4;
+
     /// Light samples of pixel sample i: as given, or 4 in the first four, then 16. Weights at a
     /// pixel are evaluated once per pixel sample, whatever the number of its light samples.
     [[nodiscard]] uint samples_of(uint i) const {
-        return light_samples > 0 ? light_samples : (i < 4 ? 4u : 16u);
+        return light_samples > 0 ? light_samples : (i < first_samples ? 4u : 16u);
     }
     [[nodiscard]] uint most_samples() const { return samples_of(spp - 1); }
 
