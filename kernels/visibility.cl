@@ -131,7 +131,7 @@ KERNEL void visibility_share(Tiles tiles, __global const LightNode* nodes,
 // What is taken for granted before any ray: a share of rays that pass, worth one ray.
 #define PRIOR_SHARE 0.7f
 // What a level of the tile's quadtree is worth to the next smaller one, rays.
-#define PARENT_RAYS 4.0f
+#define PARENT_RAYS 8.0f
 // V^ at least: what seems hidden is still drawn now and then.
 #define LEAST_VISIBILITY 0.0005f
 
@@ -148,34 +148,80 @@ static float16 shrink_16(float16 traced, float16 passed, float16 towards) {
     return (passed + PARENT_RAYS * towards) / (traced + PARENT_RAYS);
 }
 
-// roots[...] = sqrt(V^) of every cell, shrunk from the tile's mean to the mean of GROUP slots, the
-// slot, 16 x 16, 8 x 8 and 4 x 4 pixels. GROUP slots of a tile per work-item.
+// The rays of a part of a tile to all slots, and how many of them were expected to pass.
+typedef struct Outcome {
+    float16 traced, passed, expected;
+} Outcome;
+
+static void add_outcome(Outcome* sum, float16 traced, float16 passed, float16 share) {
+    sum->traced += traced;
+    sum->passed += passed;
+    sum->expected = fma(traced, share, sum->expected);
+}
+
+// What is taken for granted about a part of a tile: that it sees as much as expected, worth one ray
+// that passed and one that did not.
+#define SIGHT_RAYS 1.0f
+
+// A slot's share with the odds changed by what the part of the tile sees more or less of all slots
+// than was expected: lights are often hidden together.
+static float16 adjust(const Outcome* seen, float16 share) {
+    const float16 passed = (seen->passed + SIGHT_RAYS) / (seen->expected + SIGHT_RAYS);
+    const float16 stopped =
+        (seen->traced - seen->passed + SIGHT_RAYS) / (seen->traced - seen->expected + SIGHT_RAYS);
+    const float16 yes = share * passed;
+    return yes / fma(1.0f - share, stopped, yes);
+}
+
+// visible[...] = V^ of every cell: from the tile's mean to the mean of GROUP slots, the slot, and
+// then of 16 x 16, 8 x 8 and 4 x 4 pixels: each shrinks towards the one before, adjusted to what
+// the part sees of all slots. One quadrant (16 x 16 pixels) per work-item.
 KERNEL void visibility_estimate(Tiles tiles, __global const uint* cut_sizes,
                                 __global const Trials* shared, __global const uint16* counts,
-                                __global float16* roots) {
-    const uint tile = get_global_id(0) / (CUT_CAPACITY / GROUP);
-    const uint first = get_global_id(0) % (CUT_CAPACITY / GROUP) * GROUP;
-    if (tile >= tiles.count || first >= cut_sizes[tile]) return;
+                                __global float16* visible) {
+    const uint tile = get_global_id(0) / 4u;
+    if (tile >= tiles.count) return;
     const uint size = cut_sizes[tile];
     __global const Trials* own = shared + tile * CUT_CAPACITY;
+    const ulong first = quadrant_slots((uint)get_global_id(0)) / 16u;
+    __global const uint16* own_counts = counts + first;
+    __global float16* own_visible = visible + first;
+    const float16 zero = (float16)(0.0f);
     Trials all = {0.0f, 0.0f};
     for (uint slot = 0u; slot < size; ++slot) add_trials(&all, own[slot]);
-    Trials group = {0.0f, 0.0f};
-    const uint end = min(first + GROUP, size);
-    for (uint slot = first; slot < end; ++slot) add_trials(&group, own[slot]);
-    const float group_share = shrink(group, shrink(all, PRIOR_SHARE, 1.0f), 1.0f);
-    for (uint slot = first; slot < end; ++slot) {
-        const float16 slot_share = (float16)(shrink(own[slot], group_share, 1.0f));
-        for (uint quadrant = 4u * tile; quadrant < 4u * tile + 4u; ++quadrant) {
-            const ulong place = quadrant_slots(quadrant) / 16u + slot;
-            const CellTrials cell = load_trials(counts[place]);
-            const float16 quarter_traced = sum_quarters(cell.traced);
-            const float16 quarter_passed = sum_quarters(cell.passed);
-            const float16 whole =
-                shrink_16(sum_all(quarter_traced), sum_all(quarter_passed), slot_share);
-            const float16 quarter = shrink_16(quarter_traced, quarter_passed, whole);
-            const float16 share = shrink_16(cell.traced, cell.passed, quarter);
-            roots[place] = sqrt(max(share, LEAST_VISIBILITY));
+    const float tile_share = shrink(all, PRIOR_SHARE, 1.0f);
+    float group_share = 0.0f;
+    Outcome of_16 = {zero, zero, zero}, of_8 = of_16, of_4 = of_16;
+    for (uint slot = 0u; slot < size; ++slot) {
+        if (slot % GROUP == 0u) {
+            Trials group = {0.0f, 0.0f};
+            for (uint i = slot; i < min(slot + GROUP, size); ++i) add_trials(&group, own[i]);
+            group_share = shrink(group, tile_share, 1.0f);
         }
+        const float16 share = (float16)(shrink(own[slot], group_share, 1.0f));
+        const CellTrials t = load_trials(own_counts[slot]);
+        add_outcome(&of_16, sum_all(sum_quarters(t.traced)), sum_all(sum_quarters(t.passed)),
+                    share);
+        own_visible[slot] = share;
+    }
+    for (uint slot = 0u; slot < size; ++slot) {
+        const CellTrials t = load_trials(own_counts[slot]);
+        const float16 traced = sum_quarters(t.traced), passed = sum_quarters(t.passed);
+        const float16 share =
+            shrink_16(sum_all(traced), sum_all(passed), adjust(&of_16, own_visible[slot]));
+        add_outcome(&of_8, traced, passed, share);
+        own_visible[slot] = share;
+    }
+    for (uint slot = 0u; slot < size; ++slot) {
+        const CellTrials t = load_trials(own_counts[slot]);
+        const float16 share = shrink_16(sum_quarters(t.traced), sum_quarters(t.passed),
+                                        adjust(&of_8, own_visible[slot]));
+        add_outcome(&of_4, t.traced, t.passed, share);
+        own_visible[slot] = share;
+    }
+    for (uint slot = 0u; slot < size; ++slot) {
+        const CellTrials t = load_trials(own_counts[slot]);
+        const float16 share = shrink_16(t.traced, t.passed, adjust(&of_4, own_visible[slot]));
+        own_visible[slot] = max(share, LEAST_VISIBILITY);
     }
 }

@@ -177,7 +177,8 @@ TEST(inspect, variance_is_that_of_simulated_draws) {
             SCOPED_TRACE(fmt::format("{}, pixel {}, {}", name, pixel.x, pixel.y));
             EXPECT_NEAR(mean, reference::luminance(report.radiance),
                         5 * std::sqrt(report.variance / count) + 0.01 * mean);
-            EXPECT_NEAR(variance, report.variance, 0.15 * report.variance + 1e-12);
+            // A whole number of draws is one in a million short (find_scale() of the sampler).
+            EXPECT_NEAR(variance, report.variance, 0.15 * report.variance + 1e-6 * mean * mean);
         }
     }
 }

@@ -65,11 +65,11 @@ TileKnowledge Adaptive::knowledge(uint tile) const {
     TileKnowledge out{{}, {}, {samples, factor_ * samples, exposure_}, rounds_for(light_samples_)};
     const std::size_t begin = std::size_t{tile} * CUT_CAPACITY;
     out.cut = cuts_.nodes.download(begin, cuts_.sizes.download(tile, 1)[0]);
-    const std::vector<float> roots =
-        visibility_.roots.download(begin * CELLS_PER_TILE, CUT_CAPACITY * CELLS_PER_TILE);
+    const std::vector<float> visible =
+        visibility_.visible.download(begin * CELLS_PER_TILE, CUT_CAPACITY * CELLS_PER_TILE);
     for (std::size_t slot = 0; slot < out.cut.size(); ++slot)
         for (std::size_t cell = 0; cell < CELLS_PER_TILE; ++cell)
-            out.roots.push_back(roots[(cell / 16 * CUT_CAPACITY + slot) * 16 + cell % 16]);
+            out.visible.push_back(visible[(cell / 16 * CUT_CAPACITY + slot) * 16 + cell % 16]);
     return out;
 }
 

@@ -9,10 +9,10 @@ namespace manylight {
 
 /// What sampler adaptive knows of a tile, and how it would draw a pixel sample's next pass.
 struct TileKnowledge {
-    std::vector<uint> cut;     // [slot] node of the light tree
-    std::vector<float> roots;  // [64 * slot + cell] root of V^, cells in Morton order
-    Budget budget;             // of one round
-    uint rounds;               // of draws, whose mean is taken
+    std::vector<uint> cut;       // [slot] node of the light tree
+    std::vector<float> visible;  // [64 * slot + cell] V^, cells in Morton order
+    Budget budget;               // of one round
+    uint rounds;                 // of draws, whose mean is taken
 };
 
 /// Sampler adaptive on a batch of tiles: pixels in interleaved passes, each of which learns from

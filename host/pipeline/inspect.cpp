@@ -155,9 +155,9 @@ Group find_group(const Scene& scene, const reference::Tracer& tracer, const Came
             surface = reference::gbuffer(scene, tracer, camera, tiles, at.x, at.y, false, 0, 0);
         reference::DrawnPixel& drawn = out.pixels.emplace_back();
         drawn.surface = surface.position.w >= 0 ? &surface : nullptr;
-        drawn.start = 0;
+        drawn.starts = {0, 0.5};
         for (std::size_t slot = 0; slot < knowledge.cut.size(); ++slot)
-            drawn.roots.push_back(knowledge.roots[64 * slot + out.cell / 16 * 16 + cell]);
+            drawn.visible.push_back(knowledge.visible[64 * slot + out.cell / 16 * 16 + cell]);
     }
     return out;
 }
@@ -195,9 +195,9 @@ PixelReport inspect_pixel(const Scene& scene, const LightTree& tree, const Camer
     for (const reference::Drawn& choice : choices) {
         Truth::Sum sum;
         truth.add_node(choice.node, 1, sum);
-        const double root = group.pixels[group.own].roots[choice.slot];
+        const double visible = group.pixels[group.own].visible[choice.slot];
         const double contribution = reference::luminance(sum.value);
-        const double expected = control * root * choice.weight;  // V^ x estimate
+        const double expected = control * visible * choice.estimate;
         shares.push_back(choice.share);
         values.push_back(choice.share > 0 ? (contribution - expected) / choice.share : 0);
         within.push_back(choice.share > 0
@@ -205,9 +205,8 @@ PixelReport inspect_pixel(const Scene& scene, const LightTree& tree, const Camer
                                    choice.share
                              : 0);
         out.radiance += sum.value;
-        out.nodes.push_back({choice.node, choice.weight, root * root,
-                             knowledge.rounds * choice.share, contribution, sum.facing, sum.seen,
-                             0});
+        out.nodes.push_back({choice.node, choice.weight, visible, knowledge.rounds * choice.share,
+                             contribution, sum.facing, sum.seen, 0});
     }
     out.variance =
         (systematic_variance(shares, values) + std::accumulate(within.begin(), within.end(), 0.0)) /

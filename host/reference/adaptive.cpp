@@ -243,7 +243,8 @@ std::vector<Rays> share_rays(const LightTree& tree, const Tiles& tiles, uint til
     return out;
 }
 
-std::vector<double> visibility_roots(std::span<const Rays> totals, std::span<const Rays> counts) {
+std::vector<double> estimate_visibility(std::span<const Rays> totals,
+                                        std::span<const Rays> counts) {
     const std::size_t size = totals.size();
     const auto add = [](Rays& sum, const Rays& r) {
         sum.traced += r.traced;
@@ -252,29 +253,41 @@ std::vector<double> visibility_roots(std::span<const Rays> totals, std::span<con
     const auto shrunk = [](const Rays& r, double towards, double weight) {
         return (r.passed + weight * towards) / (r.traced + weight);
     };
-    // Sum over the cells of a slot whose number divided by `cells` is `part`.
-    const auto part_of = [&](std::size_t slot, std::size_t part, std::size_t cells) {
-        Rays sum;
-        for (std::size_t cell = part * cells; cell < (part + 1) * cells; ++cell)
-            add(sum, counts[64 * slot + cell]);
-        return sum;
-    };
     Rays all;
     for (const Rays& total : totals) add(all, total);
-    std::vector<double> roots(64 * size);
+    std::vector<double> visible(64 * size);
     for (std::size_t slot = 0; slot < size; ++slot) {
         Rays group;
         for (std::size_t i = slot / 8 * 8; i < std::min(slot / 8 * 8 + 8, size); ++i)
             add(group, totals[i]);
         const double of_slot = shrunk(totals[slot], shrunk(group, shrunk(all, 0.7, 1), 1), 1);
-        for (std::size_t cell = 0; cell < 64; ++cell) {
-            double share = of_slot;
-            for (const std::size_t cells : {16, 4, 1})
-                share = shrunk(part_of(slot, cell / cells, cells), share, 4);
-            roots[64 * slot + cell] = std::sqrt(std::max(share, 0.0005));
+        for (std::size_t cell = 0; cell < 64; ++cell) visible[64 * slot + cell] = of_slot;
+    }
+    // Parts of the tile, smaller and smaller, of so many cells.
+    for (const std::size_t cells : {16, 4, 1}) {
+        for (std::size_t part = 0; part < 64; part += cells) {
+            std::vector<Rays> rays(size);
+            Rays seen;
+            double expected = 0;  // to pass, of those traced
+            for (std::size_t slot = 0; slot < size; ++slot) {
+                for (std::size_t cell = part; cell < part + cells; ++cell)
+                    add(rays[slot], counts[64 * slot + cell]);
+                add(seen, rays[slot]);
+                expected += rays[slot].traced * visible[64 * slot + part];
+            }
+            const double passed = (seen.passed + 1) / (expected + 1);
+            const double stopped = (seen.traced - seen.passed + 1) / (seen.traced - expected + 1);
+            for (std::size_t slot = 0; slot < size; ++slot) {
+                const double share = visible[64 * slot + part];
+                const double odds = share * passed / ((1 - share) * stopped);
+                const double result = shrunk(rays[slot], odds / (1 + odds), 8);
+                for (std::size_t cell = part; cell < part + cells; ++cell)
+                    visible[64 * slot + cell] = result;
+            }
         }
     }
-    return roots;
+    for (double& v : visible) v = std::max(v, 0.0005);
+    return visible;
 }
 
 std::vector<PixelDraws> draw_nodes(const LightTree& tree, const Scene& scene, const Camera& camera,
@@ -284,10 +297,14 @@ std::vector<PixelDraws> draw_nodes(const LightTree& tree, const Scene& scene, co
         uint slot, node;
     };
     bool doubt = false;
+    const auto estimate_of = [&](const Entry& e, const DrawnPixel& p) {
+        return p.surface ? node_estimate(tree, e.node, {scene, camera, *p.surface}) : glm::dvec3(0);
+    };
     const auto weight_of = [&](const Entry& e, const DrawnPixel& p) {
-        if (!p.surface) return 0.0;
-        return luminance(node_estimate(tree, e.node, {scene, camera, *p.surface})) *
-               p.roots[e.slot];
+        // Its mean is the contribution x V^, of which 0.8 is the control variate's.
+        const double v = p.visible[e.slot];
+        const double variance = tree.nodes[e.node].count > 1 ? 0.5 : 0;
+        return luminance(estimate_of(e, p)) * std::sqrt(v * (1 + variance - 0.96 * v));
     };
     std::vector<Entry> list;
     for (uint slot = 0; slot < cut.size(); ++slot) list.push_back({slot, cut[slot]});
@@ -328,23 +345,27 @@ std::vector<PixelDraws> draw_nodes(const LightTree& tree, const Scene& scene, co
         if (!pixel.surface) continue;
         std::vector<double> weights;
         double sum = 0;
-        double visible = 0;
         for (const Entry& e : list) {
-            const double v = pixel.roots[e.slot] * pixel.roots[e.slot];
-            d.control += v * node_estimate(tree, e.node, {scene, camera, *pixel.surface});
+            d.control += pixel.visible[e.slot] * estimate_of(e, pixel);
             weights.push_back(weight_of(e, pixel));
             sum += weights.back();
-            visible += v * weights.back();
         }
         const double brightness = luminance(d.control);
-        d.variance =
-            std::max(sum * (sum - 0.96 * visible) + (0.02 - 0.04) * brightness * brightness, 0.0);
+        d.variance = std::max(sum * sum - (0.04 - 0.004) * brightness * brightness, 0.0);
         double samples = budget.samples;
-        if (budget.factor > 0)
-            samples = std::clamp<double>(
+        if (budget.factor > 0) {
+            const double wanted =
                 budget.factor * budget.exposure *
-                    std::sqrt(d.variance / (std::pow(brightness * budget.exposure, 2) + 0.01)),
-                FEWEST_DRAWS * budget.samples, MOST_DRAWS * budget.samples);
+                std::sqrt(d.variance / (std::pow(brightness * budget.exposure, 2) + 0.01));
+            samples = std::clamp<double>(wanted, FEWEST_DRAWS * budget.samples,
+                                         MOST_DRAWS * budget.samples);
+            if (std::abs(wanted - 1) < doubtful) d.uncertain = true;
+            if (samples >= 1) {
+                const double exact = samples + pixel.starts.rounding;
+                if (std::abs(exact - std::round(exact)) < doubtful * samples) d.uncertain = true;
+                samples = std::floor(exact);
+            }
+        }
         const double all = samples * 0.999999;
         double scale = sum > 0 ? all / sum : 0;
         for (int round = 0; round < 8 && sum > 0; ++round) {
@@ -359,7 +380,7 @@ std::vector<PixelDraws> draw_nodes(const LightTree& tree, const Scene& scene, co
             if (!(rest > 0 && all - certain > 0.01)) break;
             scale = std::max((all - certain) / rest, scale);
         }
-        double position = pixel.start;
+        double position = pixel.starts.position;
         double blur = 1e-6;  // of the position
         for (std::size_t i = 0; i < list.size(); ++i) {
             const double exact_share = weights[i] * scale;
@@ -370,7 +391,8 @@ std::vector<PixelDraws> draw_nodes(const LightTree& tree, const Scene& scene, co
             // Close to where a draw begins, but for nodes that are passed exactly.
             const double whole = std::round(reached);
             if (whole > 0 && std::abs(reached - whole) < blur) d.uncertain = true;
-            d.nodes.push_back({list[i].slot, list[i].node, share, weights[i]});
+            d.nodes.push_back({list[i].slot, list[i].node, share, weights[i],
+                               luminance(estimate_of(list[i], pixel))});
             for (int k = 0; k < static_cast<int>(reached); ++k) d.draws.push_back(d.nodes.back());
             position = reached - std::floor(reached);
         }
@@ -395,13 +417,21 @@ Descent descend(const LightTree& tree, uint node, const Point& point, double u, 
     return d;
 }
 
-double draw_start(uint x, uint y, const Pass& pass, uint pixel_sample, uint seed) {
-    const auto shift = static_cast<float>(unit_fraction(
-        random_bits(16 * pass.number + pass.first, pixel_sample, 0xfffffffdu, seed)[0]));
+namespace {
+
+float shifted_gradient_noise(uint x, uint y, float shift) {
     const auto fraction = [](float v) { return std::min(v - std::floor(v), 0x1.fffffep-1f); };
     const float inner =
         fraction(0.06711056f * static_cast<float>(x) + 0.00583715f * static_cast<float>(y));
     return fraction(52.9829189f * inner + shift);
+}
+
+}  // namespace
+
+Starts draw_starts(uint x, uint y, const Pass& pass, uint pixel_sample, uint seed) {
+    const auto bits = random_bits(16 * pass.number + pass.first, pixel_sample, 0xfffffffdu, seed);
+    const auto shift = [&](int i) { return static_cast<float>(unit_fraction(bits[i])); };
+    return {shifted_gradient_noise(x, y, shift(0)), shifted_gradient_noise(y, x, shift(1))};
 }
 
 }  // namespace manylight::reference

@@ -43,15 +43,16 @@ struct TileRays {
 [[nodiscard]] std::vector<Rays> share_rays(const LightTree& tree, const Tiles& tiles, uint tile,
                                            std::span<const TileRays> all);
 
-/// Stage visibility for one tile: [64 * slot + cell] the root of V^, from what is known of the
-/// slots, and what cells counted, [64 * slot + cell], cells in Morton order.
-[[nodiscard]] std::vector<double> visibility_roots(std::span<const Rays> shared,
-                                                   std::span<const Rays> counts);
+/// Stage visibility for one tile: [64 * slot + cell] V^, from what is known of the slots, and what
+/// cells counted, [64 * slot + cell], cells in Morton order.
+[[nodiscard]] std::vector<double> estimate_visibility(std::span<const Rays> shared,
+                                                      std::span<const Rays> counts);
 
 struct Drawn {
     uint slot, node;
-    double share;   // how often it is expected to be drawn
-    double weight;  // luminance of its estimate x root of V^, cd/m2
+    double share;     // how often it is expected to be drawn
+    double weight;    // root of the mean square of what a ray tells of it, luminance, cd/m2
+    double estimate;  // luminance, cd/m2
 };
 
 /// What a pixel draws.
@@ -63,11 +64,19 @@ struct PixelDraws {
     bool uncertain = false;
 };
 
+/// Where in [0, 1) a pixel's systematic draw starts, and what rounds the number of its draws; see
+/// draw_start() in kernels/samplers/adaptive.cl.
+struct Starts {
+    double position, rounding;
+};
+
+[[nodiscard]] Starts draw_starts(uint x, uint y, const Pass& pass, uint pixel_sample, uint seed);
+
 /// A pixel of the 16 that are drawn together.
 struct DrawnPixel {
-    const Surface* surface;     // or none
-    double start;               // of its systematic draw, in [0, 1)
-    std::vector<double> roots;  // [slot]
+    const Surface* surface;  // or none
+    Starts starts;
+    std::vector<double> visible;  // [slot] V^
 };
 
 /// Draws the nodes of 16 pixels, which share what is refined.
@@ -87,8 +96,5 @@ struct Descent {
 /// others.
 [[nodiscard]] Descent descend(const LightTree& tree, uint node, const Point& point, double u,
                               uint bits);
-
-/// Where a pixel's systematic draw starts; see draw_start() in kernels/samplers/adaptive.cl.
-[[nodiscard]] double draw_start(uint x, uint y, const Pass& pass, uint pixel_sample, uint seed);
 
 }  // namespace manylight::reference

@@ -2,24 +2,18 @@
 #include "stages/visibility.hpp"
 
 namespace manylight {
-namespace {
-
-constexpr std::size_t group = 8;  // slots of a work-item of visibility_estimate
-
-}  // namespace
-
 Visibility::Visibility(Device& device, std::size_t tiles)
     : counts(device.allocate<uint>(tiles * CUT_CAPACITY * CELLS_PER_TILE)),
       totals(device.allocate<Trials>(tiles * CUT_CAPACITY)),
       shared(device.allocate<Trials>(tiles * CUT_CAPACITY)),
-      roots(device.allocate<float>(tiles * CUT_CAPACITY * CELLS_PER_TILE)) {}
+      visible(device.allocate<float>(tiles * CUT_CAPACITY * CELLS_PER_TILE)) {}
 
 Arguments Visibility::arguments() const {
     return Arguments()
         .set("counts", counts)
         .set("totals", totals)
         .set("shared", shared)
-        .set("roots", roots);
+        .set("visible", visible);
 }
 
 VisibilityStage::VisibilityStage(Device& device, const DeviceScene& scene)
@@ -43,7 +37,7 @@ void VisibilityStage::estimate(const Tiles& tiles, const Cuts& cuts, Visibility&
         Arguments(scene_).set(cuts.arguments()).set(out.arguments()).set("tiles", tiles);
     sum_.launch(std::size_t{tiles.count} * CUT_CAPACITY, arguments);
     share_.launch(std::size_t{tiles.count} * CUT_CAPACITY, arguments);
-    estimate_.launch(std::size_t{tiles.count} * CUT_CAPACITY / group, arguments);
+    estimate_.launch(std::size_t{tiles.count} * 4, arguments);
 }
 
 }  // namespace manylight

@@ -13,9 +13,9 @@ struct Visibility {
     Buffer<uint> counts;    // over slots and cells: rays traced + 65536 rays passed
     Buffer<Trials> totals;  // [tile * CUT_CAPACITY + slot]: of the tile, probes included
     Buffer<Trials> shared;  // likewise, with what neighbouring tiles lend
-    Buffer<float> roots;    // over slots and cells: the root of the estimated visibility V^
+    Buffer<float> visible;  // over slots and cells: the estimated visibility V^
 
-    /// As kernels' arguments counts, totals, shared, roots.
+    /// As kernels' arguments counts, totals, shared, visible.
     [[nodiscard]] Arguments arguments() const;
 
     [[nodiscard]] static constexpr std::size_t tile_bytes() {
@@ -34,7 +34,7 @@ class VisibilityStage {
     /// Adds what stage shadows found for the rays of a pass (the arguments drawn and rays).
     void learn(const Pass& pass, const Arguments& draws, Visibility& out);
 
-    /// Renews the roots.
+    /// Renews the estimates.
     void estimate(const Tiles& tiles, const Cuts& cuts, Visibility& out);
 
   private:

@@ -33,8 +33,8 @@ struct Run {
     std::vector<Trials> probes;
     std::vector<uint> first_drawn, drawn;  // of the two passes
     std::vector<float> first_rays, shares;
-    std::vector<uint> counts;  // after the first pass
-    std::vector<float> roots;  // likewise
+    std::vector<uint> counts;    // after the first pass
+    std::vector<float> visible;  // likewise
     std::vector<float4> estimates;
 
     Run(Device& device, const DeviceScene& scene, Tiles all, uint cut_size, uint seed)
@@ -62,14 +62,14 @@ struct Run {
         learn.learn(first, stage.draws(), visibility);
         learn.estimate(tiles, cuts, visibility);
         counts = visibility.counts.download();
-        roots = visibility.roots.download();
+        visible = visibility.visible.download();
         stage.draw(tiles, second, budget, sample, points, cuts, visibility, 1, true, sums);
         drawn = stage.drawn().download();
         shares = stage.shares().download();
         estimates = sums.sums.download();
     }
 
-    // Where a slot's cell is in counts and roots.
+    // Where a slot's cell is in counts and visible.
     [[nodiscard]] static std::size_t place(std::size_t tile, std::size_t slot, std::size_t cell) {
         return ((4 * tile + cell / 16) * CUT_CAPACITY + slot) * 16 + cell % 16;
     }
@@ -154,7 +154,7 @@ Check check_visibility(const Run& run, const LightTree& tree) {
         }
     }
     for (uint tile = 0; tile < run.tiles.count; ++tile) {
-        const std::vector<double> roots = reference::visibility_roots(
+        const std::vector<double> visible = reference::estimate_visibility(
             reference::share_rays(tree, run.tiles, tile, tiles), counts[tile]);
         for (uint slot = 0; slot < run.sizes[tile]; ++slot)
             for (uint cell = 0; cell < 64; ++cell) {
@@ -164,9 +164,9 @@ Check check_visibility(const Run& run, const LightTree& tree) {
                 check.compare_exact(
                     (found & 0xffff) == expected.traced && found >> 16 == expected.passed,
                     name + ": rays");
-                const double root = roots[64 * slot + cell];
-                check.compare(std::abs(run.roots[Run::place(tile, slot, cell)] - root),
-                              32 * epsilon * root, name);
+                const double v = visible[64 * slot + cell];
+                check.compare(std::abs(run.visible[Run::place(tile, slot, cell)] - v),
+                              64 * epsilon * v, name);
             }
     }
     return check;
@@ -193,11 +193,11 @@ Check check_weights(const Run& run, const LightTree& tree, const Scene& scene, c
             const glm::uvec2 at = item_pixel(run.tiles, item);
             reference::DrawnPixel pixel{
                 run.hit(item) ? &run.surfaces[item] : nullptr,
-                reference::draw_start(at.x, at.y, run.second, run.sample.index, run.sample.seed),
+                reference::draw_starts(at.x, at.y, run.second, run.sample.index, run.sample.seed),
                 {}};
             for (uint slot = 0; slot < run.sizes[tile]; ++slot)
-                pixel.roots.push_back(
-                    run.roots[Run::place(tile, slot, 16 * (quadrant % 4) + cell)]);
+                pixel.visible.push_back(
+                    run.visible[Run::place(tile, slot, 16 * (quadrant % 4) + cell)]);
             pixels.push_back(pixel);
             numbers.push_back(p);
         }
@@ -248,8 +248,7 @@ Check check_samples(const Run& run, const LightTree& tree, const Scene& scene,
         const reference::Point point{scene, camera, run.surfaces[item]};
         const glm::uvec2 at = item_pixel(run.tiles, item);
         const auto visibility = [&](uint slot) {
-            const double root = run.roots[Run::place(tile, slot, cell)];
-            return root * root;
+            return double{run.visible[Run::place(tile, slot, cell)]};
         };
         glm::dvec3 sum(0);
         double magnitude = 0;
@@ -264,9 +263,11 @@ Check check_samples(const Run& run, const LightTree& tree, const Scene& scene,
         for (std::size_t c = 0; c < 16; ++c) {
             const std::size_t other = Run::item(
                 run.second, (16 * quadrant + c) * run.second.count + p % run.second.count);
-            reference::DrawnPixel pixel{run.hit(other) ? &run.surfaces[other] : nullptr, 0.5, {}};
+            reference::DrawnPixel pixel{
+                run.hit(other) ? &run.surfaces[other] : nullptr, {0.5, 0.5}, {}};
             for (uint slot = 0; slot < run.sizes[tile]; ++slot)
-                pixel.roots.push_back(run.roots[Run::place(tile, slot, 16 * (quadrant % 4) + c)]);
+                pixel.visible.push_back(
+                    run.visible[Run::place(tile, slot, 16 * (quadrant % 4) + c)]);
             group.push_back(pixel);
         }
         const reference::PixelDraws own = reference::draw_nodes(

@@ -20,6 +20,11 @@
 // The share of what is thought to be visible that is taken from the nodes' estimates rather than
 // from shadow rays: a control variate.
 #define CONTROL 0.8f
+// A node of several lights is expected to contribute as estimated, within a standard deviation of
+// the root of this, relative: its lights differ.
+#define GROUP_VARIANCE 0.5f
+// The same for what is known of V^ and of areas, for a whole pixel.
+#define PIXEL_VARIANCE 0.004f
 // A node is replaced by its children where its weight times its angular size exceeds this share of
 // the weight of one draw.
 #define REFINED_SHARE 0.25f
@@ -96,8 +101,7 @@ typedef struct Weights {
     uint entries[MOST_NODES];
     uint size;
     float16 sum;
-    float16 visible_sum;  // of V^ x weight
-    Color_16 control;     // of V^ x estimate
+    Color_16 control;  // of V^ x estimate
 } Weights;
 
 static void add_color(Color_16* sum, Color_16 c, float16 factor) {
@@ -106,17 +110,20 @@ static void add_color(Color_16* sum, Color_16 c, float16 factor) {
     sum->blue = fma(c.blue, factor, sum->blue);
 }
 
-// A node's contribution and its weight: the contribution's luminance x sqrt(V^).
+// A node's contribution and its weight: the root of the mean square of what a shadow ray says of
+// the contribution's luminance, less the control variate.
 typedef struct Weighed {
     Color_16 color;
     float16 weight;
 } Weighed;
 
 static Weighed weigh(__global const LightNode* node, __global const Light* lights,
-                     const Points_16* points, float16 root) {
+                     const Points_16* points, float16 visible) {
     Weighed w;
     w.color = node_estimate_16(node, lights, points);
-    w.weight = color_luminance_16(w.color) * root;
+    const float whole = node->count > 1u ? 1.0f + GROUP_VARIANCE : 1.0f;
+    const float16 square = visible * (whole - CONTROL * (2.0f - CONTROL) * visible);
+    w.weight = color_luminance_16(w.color) * sqrt(square);
     return w;
 }
 
@@ -133,14 +140,14 @@ static bool wants_children(__global const LightNode* node, const Points_16* p, f
 
 // The weights of a cut's nodes; what is close to a pixel is refined.
 static void weigh_nodes(Weights* w, __global const LightNode* nodes, __global const Light* lights,
-                        __global const uint* cut, uint cut_size, __global const float16* roots,
+                        __global const uint* cut, uint cut_size, __global const float16* visible,
                         const Points_16* points, int16 valid, float samples) {
     const float16 zero = (float16)(0.0f);
     Weighed cut_weights[CUT_CAPACITY];
     float16 cut_sum = zero;
     for (uint slot = 0u; slot < cut_size; ++slot) {
-        const float16 root = select(zero, roots[slot], valid);
-        cut_weights[slot] = weigh(nodes + cut[slot], lights, points, root);
+        cut_weights[slot] =
+            weigh(nodes + cut[slot], lights, points, select(zero, visible[slot], valid));
         cut_sum += cut_weights[slot].weight;
     }
     const float16 limit = cut_sum * (REFINED_SHARE / samples);
@@ -148,7 +155,7 @@ static void weigh_nodes(Weights* w, __global const LightNode* nodes, __global co
     Weighed stack_weights[MOST_SPLITS + 1u];
     uint splits = 0u;
     for (uint slot = 0u; slot < cut_size; ++slot) {
-        const float16 root = select(zero, roots[slot], valid);
+        const float16 seen = select(zero, visible[slot], valid);
         stack[0] = cut[slot];
         stack_weights[0] = cut_weights[slot];
         for (uint top = 1u; top > 0u;) {
@@ -161,40 +168,39 @@ static void weigh_nodes(Weights* w, __global const LightNode* nodes, __global co
                 for (uint child = 0u; child < 2u; ++child) {  // the left one ends on top
                     const uint at = child == 0u ? right : node + 1u;
                     stack[top] = at;
-                    stack_weights[top++] = weigh(nodes + at, lights, points, root);
+                    stack_weights[top++] = weigh(nodes + at, lights, points, seen);
                 }
                 continue;
             }
-            add_color(&w->control, own.color, root * root);
+            add_color(&w->control, own.color, seen);
             w->sum += own.weight;
-            w->visible_sum = fma(own.weight, root * root, w->visible_sum);
             w->values[w->size] = own.weight;
             w->entries[w->size++] = node_entry(nodes, node, slot);
         }
     }
 }
 
-// What one draw is expected to be like: the variance of an estimate whose weights are what they
-// are, less what the control variate takes over, and a little for what V^ does not know.
+// What one draw is expected to be like. Its mean square is the square of the weights' sum, its mean
+// what the control variate leaves of the brightness.
 static void expect(const Weights* w, float16* variance, float16* brightness) {
     *brightness = color_luminance_16(w->control);
-    const float remaining = CONTROL * (2.0f - CONTROL);
-    const float16 square = *brightness * *brightness;
-    *variance = max(w->sum * (w->sum - remaining * w->visible_sum) +
-                        (0.02f - (1.0f - CONTROL) * (1.0f - CONTROL)) * square,
-                    0.0f);
+    const float known = (1.0f - CONTROL) * (1.0f - CONTROL) - PIXEL_VARIANCE;
+    *variance = max(w->sum * w->sum - known * *brightness * *brightness, 0.0f);
 }
 
 // Draws by the expected deviation of the pixel relative to its brightness, as relMSE weighs it.
-static float16 find_samples(const Weights* w, Budget budget) {
+// From one on a whole number, up or down by `rounding` in [0, 1): the number of draws adds no
+// noise.
+static float16 find_samples(const Weights* w, Budget budget, float16 rounding) {
     if (budget.factor == 0.0f) return (float16)(budget.samples);
     float16 variance, brightness;
     expect(w, &variance, &brightness);
     const float square = budget.exposure * budget.exposure;
     const float16 deviation =
         sqrt(variance * square / fma(brightness * brightness, (float16)(square), (float16)(0.01f)));
-    return clamp(deviation * budget.factor, FEWEST_DRAWS * budget.samples,
-                 MOST_DRAWS * budget.samples);
+    const float16 samples = clamp(deviation * budget.factor, FEWEST_DRAWS * budget.samples,
+                                  MOST_DRAWS * budget.samples);
+    return select(samples, floor(samples + rounding), samples >= 1.0f);
 }
 
 // scale[lane], by which weights become expected numbers of draws, at most 1 where a node is one
@@ -241,7 +247,7 @@ KERNEL void adaptive_draw(Tiles tiles, Camera camera, Pass pass, Budget budget,
                           __global const Surface* surfaces, __global const Material* materials,
                           __global const Light* lights, __global const LightNode* nodes,
                           __global const uint* cut_nodes, __global const uint* cut_sizes,
-                          __global const float16* roots, uint pixel_sample, uint seed,
+                          __global const float16* visible, uint pixel_sample, uint seed,
                           __global uint* drawn, __global float* shares, __global float4* base,
                           __global Expectation* expectations, __global float4* origins,
                           __global float* rays, __global float* values) {
@@ -259,8 +265,9 @@ KERNEL void adaptive_draw(Tiles tiles, Camera camera, Pass pass, Budget budget,
     bool reflecting = false;
     int16 valid = (int16)(0);
     float16 position = (float16)(0.0f);
-    const float shift = unit_float(
-        random_bits(16u * pass.number + pass.first, pixel_sample, RANDOM_DRAW_SHIFT, seed).x);
+    float16 rounding = (float16)(0.0f);
+    const uint4 shifts =
+        random_bits(16u * pass.number + pass.first, pixel_sample, RANDOM_DRAW_SHIFT, seed);
     for (uint cell = 0u; cell < 16u; ++cell) {
         const uint item = pass_item(pass, (16u * local_quadrant + cell) * pass.count + place);
         const bool hit = item_in_image(tiles, item) && !surface_missed(surfaces + item);
@@ -269,7 +276,8 @@ KERNEL void adaptive_draw(Tiles tiles, Camera camera, Pass pass, Budget budget,
         if (hit) {
             receiver = make_receiver(surfaces + item, materials, camera);
             const uint2 pixel = item_pixel(tiles, item);
-            SET_LANE(position, cell, draw_start(pixel, shift));
+            SET_LANE(position, cell, draw_start(pixel, unit_float(shifts.x)));
+            SET_LANE(rounding, cell, draw_start(pixel.yx, unit_float(shifts.y)));
             UINT_LANE(pixels, cell) = pixel.y * tiles.width + pixel.x;
         } else {
             receiver.position = receiver.normal = receiver.to_camera = (float3)(1.0f);
@@ -293,16 +301,16 @@ KERNEL void adaptive_draw(Tiles tiles, Camera camera, Pass pass, Budget budget,
     uint16 counts = (uint16)(0u);
     Weights w;
     w.size = 0u;
-    w.sum = w.visible_sum = (float16)(0.0f);
+    w.sum = (float16)(0.0f);
     w.control.red = w.control.green = w.control.blue = (float16)(0.0f);
     const uint capacity = 16u * pass.packets;
     const uint first_pixel = 16u * local_quadrant * pass.count + place;
-    __global const float16* own_roots = roots + quadrant_slots(quadrant) / 16u;
+    __global const float16* own_visible = visible + quadrant_slots(quadrant) / 16u;
     Color_16 drawn_control = {0.0f, 0.0f, 0.0f};  // of what is drawn, over how often it is
     if (lanes_16(valid)) {
-        weigh_nodes(&w, nodes, lights, cut_nodes + tile * CUT_CAPACITY, cut_sizes[tile], own_roots,
-                    &points, valid, budget.samples);
-        const float16 scale = find_scale(&w, find_samples(&w, budget));
+        weigh_nodes(&w, nodes, lights, cut_nodes + tile * CUT_CAPACITY, cut_sizes[tile],
+                    own_visible, &points, valid, budget.samples);
+        const float16 scale = find_scale(&w, find_samples(&w, budget, rounding));
         for (uint i = 0u; i < w.size; ++i) {
             const uint entry = w.entries[i];
             float16 share = w.values[i] * scale;
@@ -312,8 +320,7 @@ KERNEL void adaptive_draw(Tiles tiles, Camera camera, Pass pass, Budget budget,
             position = reached - times;
             uint cells = lanes_16(times > 0.0f);
             if (!cells) continue;
-            const float16 root = own_roots[DRAWN_SLOT(entry)];
-            const float16 factor = root * root * times / max(share, 1e-30f);
+            const float16 factor = own_visible[DRAWN_SLOT(entry)] * times / max(share, 1e-30f);
             add_color(&drawn_control, node_estimate_16(nodes + DRAWN_NODE(entry), lights, &points),
                       select((float16)(0.0f), factor, times > 0.0f));
             const uint node = DRAWN_NODE(entry);

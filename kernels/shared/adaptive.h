@@ -47,7 +47,7 @@ typedef struct Budget {
 SHARED_SIZE(Budget, 12)
 
 /// A pixel's draws are between these, times the average.
-#define FEWEST_DRAWS 0.5f
+#define FEWEST_DRAWS 0.25f
 #define MOST_DRAWS 8.0f
 
 /// What a pixel's draws are expected to be like.
