@@ -19,7 +19,7 @@ PROGRAM = "build/manylight"
 FOLDER = pathlib.Path("build/samplers")
 HEIGHTS = {"cornell": 256, "dragon": 256}  # others: 180
 BUILTIN = ("cornell", "dragon", "rooms", "city", "glossy", "blinds")
-LADDER = ((4, 1), (8, 1), (16, 1), (8, 4), (8, 8))  # light samples, pixel samples
+LADDER = ((4, 1), (8, 1), (16, 1), (32, 1), (64, 1), (8, 4), (8, 8))  # light samples, pixel samples
 MOST_LIGHTS = 20_000  # of which all can be drawn
 
 
