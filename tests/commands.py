@@ -36,6 +36,9 @@ class CommandTest(unittest.TestCase):
         for word in words:
             self.assertIn(word, run.stderr)
 
+    def oiio(self, *arguments):
+        subprocess.run(["oiiotool", *arguments], cwd=self.folder, check=True)
+
     def files(self):
         return sorted(path.name for path in self.folder.iterdir())
 
@@ -380,6 +383,46 @@ class CommandTest(unittest.TestCase):
         self.run_program("render", self.cornell, "--height", 8, "-o", "c.exr", "-q")
         self.refuse("compare", "a.exr", "c.exr", words=["a.exr", "16", "c.exr", "8"])
         self.refuse("compare", "a.exr", "none.exr", words=["none.exr"])
+
+    def test_compare_with_a_reference(self):
+        for name, spp in (("a.exr", 4), ("b.exr", 1), ("r.exr", 64)):
+            self.run_program("render", self.cornell, "--height", 16, "--spp", spp, "--pixel-centre",
+                             "-o", name, "-q")
+        run = self.run_program("compare", "a.exr", "b.exr", "--ref", "r.exr", "-o", "e.png")
+        for words in ("a.exr: relMSE", "b.exr: relMSE", "b.exr over a.exr", "MAPE", "worst 0.1%",
+                      "wrote e.png"):
+            self.assertIn(words, run.stdout)
+        both = json.loads(self.run_program("compare", "a.exr", "b.exr", "--ref", "r.exr",
+                                           "--json").stdout)["images"]
+        for name, of_both in zip(("a.exr", "b.exr"), both):
+            alone = json.loads(self.run_program("compare", name, "r.exr", "--json").stdout)
+            self.assertEqual(of_both, {"file": name, **alone})
+        self.assertLess(both[0]["relmse"], both[1]["relmse"])
+        self.assertEqual((self.folder / "e.png").read_bytes()[:4], b"\x89PNG")
+
+    def test_compare_refuses(self):
+        self.run_program("render", self.cornell, "--height", 8, "-o", "a.exr", "-q")
+        self.oiio("a.exr", "--ch", "R,G", "-o", "two.exr")
+        self.oiio("a.exr", "--mulc", "0", "-o", "black.exr")
+        self.oiio("a.exr", "--fill:color=nan,1,1", "1x1+3+2", "-o", "nan.exr")
+        (self.folder / "text.exr").write_text("no image")
+        for arguments, words in (
+                (["two.exr", "a.exr"], ["two.exr", "channel B", "R, G"]),
+                (["a.exr", "two.exr"], ["two.exr", "channel B"]),
+                (["a.exr", "black.exr"], ["black.exr", "luminance"]),
+                (["a.exr", "nan.exr"], ["nan.exr", "pixel 3, 2, channel R", "nan"]),
+                (["text.exr", "a.exr"], ["text.exr", "cannot be read"]),
+                ([self.folder, "a.exr"], [self.folder.name, "cannot be read"]),
+                (["a.exr", "a.exr", "-o", "a.exr"], ["--output", "a.exr", ".png"]),
+                (["a.exr", "a.exr", "-o", "no/e.png"], ["--output", "no/e.png", "folder"]),
+                (["a.exr", "a.exr", "--ref", "none.exr"], ["none.exr"])):
+            with self.subTest(arguments=arguments):
+                self.refuse("compare", *arguments, words=words)
+        run = self.run_program("compare", "nan.exr", "a.exr", code=3)
+        self.assertIn("nan.exr: 1 of its values", run.stderr)
+        self.assertIn("pixel 3, 2, channel R", run.stderr)
+        self.assertIn("relMSE", run.stdout)
+        self.assertNotIn("nan", run.stdout)
 
     def test_help(self):
         self.assertIn("render", self.run_program("--help").stdout)

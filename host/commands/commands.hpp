@@ -73,6 +73,14 @@ struct BenchArguments {
     unsigned bvh_block = 0;
 };
 
+struct CompareArguments {
+    std::string image;
+    std::string other;      // the reference, unless there is one below
+    std::string reference;  // what both are judged by
+    std::string output;     // .png, picture of the errors
+    bool json = false;
+};
+
 // Each returns the program's exit status and throws InputError or RuntimeError.
 int run_render(const RenderArguments& arguments);
 int run_inspect(const InspectArguments& arguments);
@@ -80,7 +88,7 @@ int run_verify(const VerifyArguments& arguments);
 int run_scene(const BuiltinArguments& arguments);
 int run_devices();
 int run_bench(const BenchArguments& arguments);
-int run_compare(const std::string& image, const std::string& reference, bool json);
+int run_compare(const CompareArguments& arguments);
 
 /// Parses the command line and runs what it asks for.
 int run_program(int argc, char** argv);

@@ -333,6 +333,27 @@ void add_scene_command(CLI::App& app, std::function<int()>& run) {
     command->callback([&run, arguments] { run = [arguments] { return run_scene(*arguments); }; });
 }
 
+void add_compare(CLI::App& app, std::function<int()>& run) {
+    auto arguments = std::make_shared<CompareArguments>();
+    CLI::App* command =
+        app.add_subcommand("compare", "measure an image's error against another, or two images'");
+    command->add_option("image", arguments->image, "image to judge")->required();
+    command
+        ->add_option("reference", arguments->other,
+                     "what it should be; with --ref, a second image to judge")
+        ->required();
+    command->add_option("--ref", arguments->reference, "what both should be");
+    command->add_option("-o,--output", arguments->output, "picture of the errors, .png");
+    command->add_flag("--json", arguments->json, "print JSON");
+    command->footer(
+        "\nReads R, G, B of any image, also another renderer's: floats as linear values, integers "
+        "as sRGB codes.\nExits with 3 where an image to judge holds what is no finite "
+        "number.\n\nExamples:\n"
+        "  manylight compare render.exr reference.exr\n"
+        "  manylight compare a.exr b.exr --ref reference.exr -o errors.png\n");
+    command->callback([&run, arguments] { run = [arguments] { return run_compare(*arguments); }; });
+}
+
 }  // namespace
 
 int run_program(int argc, char** argv) {
@@ -351,15 +372,7 @@ int run_program(int argc, char** argv) {
     app.add_subcommand("devices", "list OpenCL devices and what each can do")->callback([&run] {
         run = run_devices;
     });
-    std::string image;
-    std::string reference;
-    bool json = false;
-    CLI::App* compare = app.add_subcommand("compare", "measure an image's error against another");
-    compare->add_option("image", image, "image to judge")->required();
-    compare->add_option("reference", reference, "what it should be")->required();
-    compare->add_flag("--json", json, "print JSON");
-    compare->footer("\nExample:\n  manylight compare render.exr reference.exr\n");
-    compare->callback([&] { run = [&] { return run_compare(image, reference, json); }; });
+    add_compare(app, run);
     try {
         app.parse(argc, argv);
     } catch (const CLI::Success& help) {

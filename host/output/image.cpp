@@ -37,11 +37,25 @@ float srgb_from_linear(float linear) {
     return linear <= 0.0031308f ? 12.92f * linear : 1.055f * std::pow(linear, 1 / 2.4f) - 0.055f;
 }
 
-float linear_from_srgb(float code) {
-    return code <= 0.04045f ? code / 12.92f : std::pow((code + 0.055f) / 1.055f, 2.4f);
+// The names of a file's channels, for messages.
+std::string list_channels(const OIIO::ImageSpec& spec) {
+    std::string names;
+    for (const std::string& name : spec.channelnames) names += (names.empty() ? "" : ", ") + name;
+    return names;
+}
+
+// A library's message in one line.
+std::string one_line(std::string text) {
+    for (char& c : text)
+        if (c == '\n') c = ' ';
+    return text;
 }
 
 }  // namespace
+
+float linear_from_srgb(float code) {
+    return code <= 0.04045f ? code / 12.92f : std::pow((code + 0.055f) / 1.055f, 2.4f);
+}
 
 void write_exr(const std::string& path, const std::vector<Image>& layers,
                const Metadata& metadata) {
@@ -98,16 +112,19 @@ float auto_exposure(const Image& image) {
 
 Image read_rgb(const std::string& path) {
     const std::unique_ptr<OIIO::ImageInput> in = OIIO::ImageInput::open(path);
-    if (!in) throw InputError("{}: cannot be read: {}", path, OIIO::geterror());
+    if (!in) throw InputError("{}: cannot be read: {}", path, one_line(OIIO::geterror()));
     const OIIO::ImageSpec& spec = in->spec();
+    if (spec.deep) throw InputError("{}: is a deep image, which has no one value per pixel", path);
     std::vector<float> pixels(std::size_t{static_cast<unsigned>(spec.width)} * spec.height *
                               spec.nchannels);
     if (!in->read_image(0, 0, 0, -1, OIIO::TypeDesc::FLOAT, pixels.data()))
-        throw InputError("{}: cannot be read: {}", path, in->geterror());
+        throw InputError("{}: cannot be read: {}", path, one_line(in->geterror()));
     Image image(spec.width, spec.height, {"R", "G", "B"});
     for (int c = 0; c < 3; ++c) {
         const int channel = spec.channelindex(image.channels[c]);
-        if (channel < 0) throw InputError("{}: has no channel {}", path, image.channels[c]);
+        if (channel < 0)
+            throw InputError("{}: has no channel {} (its channels: {})", path, image.channels[c],
+                             list_channels(spec));
         for (std::size_t i = 0; i < image.pixel_count(); ++i)
             image.values[3 * i + c] = pixels[i * spec.nchannels + channel];
     }

@@ -46,6 +46,9 @@ void write_png(const std::string& path, const Image& image, float scale, const M
 /// The scale that brings the 90th percentile of the luminances of `image` that are not 0 to 0.7.
 [[nodiscard]] float auto_exposure(const Image& image);
 
+/// A linear value of an sRGB code, both 0 to 1 (IEC 61966-2-1).
+[[nodiscard]] float linear_from_srgb(float code);
+
 /// The channels R, G, B of an image file, linear: integers are taken for sRGB codes. Throws
 /// InputError.
 [[nodiscard]] Image read_rgb(const std::string& path);
