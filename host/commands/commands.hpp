@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "chart/measure.hpp"
 #include "pipeline/frame.hpp"
 
 namespace manylight {
@@ -81,6 +82,13 @@ struct CompareArguments {
     bool json = false;
 };
 
+struct ChartArguments {
+    SceneArguments scene;
+    ChartOptions options;
+    std::size_t memory = 0;  // see RenderOptions
+    std::string output;      // folder; empty: named after the scene
+};
+
 // Each returns the program's exit status and throws InputError or RuntimeError.
 int run_render(const RenderArguments& arguments);
 int run_inspect(const InspectArguments& arguments);
@@ -88,6 +96,7 @@ int run_verify(const VerifyArguments& arguments);
 int run_scene(const BuiltinArguments& arguments);
 int run_devices();
 int run_bench(const BenchArguments& arguments);
+int run_chart(const ChartArguments& arguments);
 int run_compare(const CompareArguments& arguments);
 
 /// Parses the command line and runs what it asks for.

@@ -3,6 +3,7 @@
 
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
+#include <OpenImageIO/strutil.h>
 
 #include <algorithm>
 #include <cmath>
@@ -19,9 +20,10 @@ void set_metadata(OIIO::ImageSpec& spec, const Metadata& metadata) {
         std::visit([&, &key = name](const auto& v) { spec.attribute(key, v); }, value);
 }
 
-// Encodes in memory: a writer that meets a full disk may not say so, write_file() does.
-void encode_and_write(const std::string& path, const OIIO::ImageSpec& spec, OIIO::TypeDesc type,
-                      const void* pixels) {
+// In memory: a writer that meets a full disk may not say so, write_file() does. The path's ending
+// says how.
+std::vector<unsigned char> encode(const std::string& path, const OIIO::ImageSpec& spec,
+                                  OIIO::TypeDesc type, const void* pixels) {
     std::vector<unsigned char> bytes;
     OIIO::Filesystem::IOVecOutput proxy(bytes);
     const std::unique_ptr<OIIO::ImageOutput> out = OIIO::ImageOutput::create(path);
@@ -29,6 +31,12 @@ void encode_and_write(const std::string& path, const OIIO::ImageSpec& spec, OIIO
     if (!out->set_ioproxy(&proxy) || !out->open(path, spec) || !out->write_image(type, pixels) ||
         !out->close())
         throw RuntimeError("{}: cannot be encoded: {}", path, out->geterror());
+    return bytes;
+}
+
+void encode_and_write(const std::string& path, const OIIO::ImageSpec& spec, OIIO::TypeDesc type,
+                      const void* pixels) {
+    const std::vector<unsigned char> bytes = encode(path, spec, type, pixels);
     write_file(path, std::as_bytes(std::span(bytes)));
 }
 
@@ -110,7 +118,54 @@ float auto_exposure(const Image& image) {
     return 0.7f / *nth;
 }
 
+std::vector<std::uint32_t> pack_rgbe(const Image& image) {
+    std::vector<std::uint32_t> out(image.pixel_count());
+    for (std::size_t i = 0; i < out.size(); ++i) {
+        const float* p = image.values.data() + 3 * i;
+        const float largest = std::max({p[0], p[1], p[2], 0.f});
+        if (!(largest > 1e-36f) || !std::isfinite(largest)) continue;
+        int exponent = 0;
+        // The largest code may be rounded up to 256.
+        if (std::lround(256 * std::frexp(largest, &exponent)) == 256) ++exponent;
+        for (int c = 0; c < 3; ++c)
+            if (p[c] > 0)
+                out[i] |= static_cast<std::uint32_t>(std::lround(std::ldexp(p[c], 8 - exponent)))
+                          << (8 * c);
+        out[i] |= static_cast<std::uint32_t>(exponent + 128) << 24;
+    }
+    return out;
+}
+
+Image unpack_rgbe(const std::vector<std::uint32_t>& packed, unsigned width, unsigned height) {
+    Image out(width, height, {"R", "G", "B"});
+    for (std::size_t i = 0; i < packed.size(); ++i)
+        for (int c = 0; c < 3; ++c)
+            out.values[3 * i + c] = std::ldexp(static_cast<float>(packed[i] >> (8 * c) & 255),
+                                               static_cast<int>(packed[i] >> 24) - 136);
+    return out;
+}
+
+std::string rgbe_data_uri(const std::vector<std::uint32_t>& packed, unsigned width,
+                          unsigned height) {
+    std::vector<unsigned char> planes(4 * packed.size());
+    for (std::size_t i = 0; i < packed.size(); ++i)
+        for (std::size_t c = 0; c < 4; ++c)
+            planes[c * packed.size() + i] = static_cast<unsigned char>(packed[i] >> (8 * c));
+    const OIIO::ImageSpec spec(static_cast<int>(width), static_cast<int>(4 * height), 1,
+                               OIIO::TypeDesc::UINT8);
+    const std::vector<unsigned char> png =
+        encode("rgbe.png", spec, OIIO::TypeDesc::UINT8, planes.data());
+    return "data:image/png;base64," +
+           OIIO::Strutil::base64_encode({reinterpret_cast<const char*>(png.data()), png.size()});
+}
+
 Image read_rgb(const std::string& path) {
+    std::map<std::string, std::string> none;
+    return read_channels(path, {"R", "G", "B"}, none);
+}
+
+Image read_channels(const std::string& path, const std::vector<std::string>& channels,
+                    std::map<std::string, std::string>& texts) {
     const std::unique_ptr<OIIO::ImageInput> in = OIIO::ImageInput::open(path);
     if (!in) throw InputError("{}: cannot be read: {}", path, one_line(OIIO::geterror()));
     const OIIO::ImageSpec& spec = in->spec();
@@ -119,18 +174,19 @@ Image read_rgb(const std::string& path) {
                               spec.nchannels);
     if (!in->read_image(0, 0, 0, -1, OIIO::TypeDesc::FLOAT, pixels.data()))
         throw InputError("{}: cannot be read: {}", path, one_line(in->geterror()));
-    Image image(spec.width, spec.height, {"R", "G", "B"});
-    for (int c = 0; c < 3; ++c) {
+    Image image(spec.width, spec.height, channels);
+    for (std::size_t c = 0; c < channels.size(); ++c) {
         const int channel = spec.channelindex(image.channels[c]);
         if (channel < 0)
             throw InputError("{}: has no channel {} (its channels: {})", path, image.channels[c],
                              list_channels(spec));
         for (std::size_t i = 0; i < image.pixel_count(); ++i)
-            image.values[3 * i + c] = pixels[i * spec.nchannels + channel];
+            image.values[channels.size() * i + c] = pixels[i * spec.nchannels + channel];
     }
     if (!spec.format.is_floating_point()) {  // codes for a screen
         for (float& value : image.values) value = linear_from_srgb(value);
     }
+    for (auto& [name, value] : texts) value = spec.get_string_attribute(name);
     return image;
 }
 

@@ -2,6 +2,7 @@
 // Images in memory and in files. Only host/output/ knows OpenImageIO.
 #pragma once
 
+#include <cstdint>
 #include <glm/vec3.hpp>
 #include <map>
 #include <string>
@@ -43,6 +44,17 @@ void write_exr(const std::string& path, const std::vector<Image>& layers, const 
 /// Writes the first three channels, times `scale`, as an 8-bit sRGB PNG, in the same way.
 void write_png(const std::string& path, const Image& image, float scale, const Metadata& metadata);
 
+/// Radiance's RGBE: R, G, B and a shared exponent e, a value being its code x 2^(e - 136). [y *
+/// width + x], R in the lowest byte. Negative values and what is no number become 0.
+[[nodiscard]] std::vector<std::uint32_t> pack_rgbe(const Image& image);
+[[nodiscard]] Image unpack_rgbe(const std::vector<std::uint32_t>& packed, unsigned width,
+                                unsigned height);
+
+/// A grey PNG of RGBE's four planes, one below another, as a data URI. (Not as four channels: a
+/// browser multiplies colours with alpha.)
+[[nodiscard]] std::string rgbe_data_uri(const std::vector<std::uint32_t>& packed, unsigned width,
+                                        unsigned height);
+
 /// The scale that brings the 90th percentile of the luminances of `image` that are not 0 to 0.7.
 [[nodiscard]] float auto_exposure(const Image& image);
 
@@ -52,5 +64,10 @@ void write_png(const std::string& path, const Image& image, float scale, const M
 /// The channels R, G, B of an image file, linear: integers are taken for sRGB codes. Throws
 /// InputError.
 [[nodiscard]] Image read_rgb(const std::string& path);
+
+/// Any channels of an image file, by name, likewise; and of `texts`, names of header facts, the
+/// values, empty where there are none.
+[[nodiscard]] Image read_channels(const std::string& path, const std::vector<std::string>& channels,
+                                  std::map<std::string, std::string>& texts);
 
 }  // namespace manylight
