@@ -6,8 +6,8 @@
 const pictures = JSON.parse(element("images").textContent);
 const pixelCount = pictures.width * pictures.height;
 
-// A grey PNG holds the planes R, G, B and exponent of Radiance's RGBE, one below another. Gives
-// [3 * pixel + channel].
+// A grey PNG holds five planes, one below another: R, G, B and exponent of Radiance's RGBE, and the
+// signs of the three. Gives [3 * pixel + channel].
 async function decode(uri) {
   const image = new Image();
   image.src = uri;
@@ -19,7 +19,9 @@ async function decode(uri) {
   const out = new Float32Array(3 * pixelCount);
   for (let i = 0; i < pixelCount; ++i) {
     const scale = 2 ** (data[4 * (3 * pixelCount + i)] - 136);
-    for (let c = 0; c < 3; ++c) out[3 * i + c] = scale * data[4 * (c * pixelCount + i)];
+    const signs = data[4 * (4 * pixelCount + i)];
+    for (let c = 0; c < 3; ++c)
+      out[3 * i + c] = (signs & (1 << c) ? -scale : scale) * data[4 * (c * pixelCount + i)];
   }
   return out;
 }
@@ -64,7 +66,7 @@ async function drawPicture(index, what, scale) {
   for (let i = 0; i < pixelCount; ++i) {
     const color = errors && colorOfError(errors[i]);
     for (let c = 0; c < 3; ++c)
-      out.data[4 * i + c] = color ? color[c] : srgbCodes[Math.round(8192 * Math.min(1, scale * pixels[3 * i + c]))];
+      out.data[4 * i + c] = color ? color[c] : srgbCodes[Math.round(8192 * Math.min(1, Math.max(0, scale * pixels[3 * i + c])))];
     out.data[4 * i + 3] = 255;
   }
   context.putImageData(out, 0, 0);

@@ -148,11 +148,19 @@ const errorPlots = {};
 errorPlots.time = errorPlot("time-plot", "time", "seconds");
 errorPlots.samples = errorPlot("samples-plot", "samples", "light samples per pixel");
 
+// The axes' ends: of all methods, so that they stay where they are when some are hidden.
+function setEnds(axis, values) {
+  const [least, most] = [Math.min(...values), Math.max(...values)];
+  Object.assign(axis, { min: least / 1.3, max: most * 1.3 });
+}
+
 function drawErrors() {
   for (const [kind, plot] of Object.entries(errorPlots)) {
     applyTheme(plot);
     plot.options.scales.y.title.text = metricName[metric()];
     plot.data = errorData(kind);
+    for (const axis of ["x", "y"])
+      setEnds(plot.options.scales[axis], plot.data.datasets.flatMap((set) => set.data.map((point) => point[axis])));
     plot.setActiveElements([]);
     plot.update("none");
     const shown = methods.filter((m) => m.shown && m.settings.length).map((m) => m.name).join(", ");

@@ -76,6 +76,7 @@ void check_chart_folder(const std::string& option, const std::string& path) {
 
 void write_chart_folder(const std::string& path,
                         const std::function<void(const std::string&)>& fill) {
+    check_chart_folder("folder", path);  // again: much time may have gone by
     const Uninterrupted uninterrupted;
     const fs::path target = folder_of(path);
     const fs::path aside =

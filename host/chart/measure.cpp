@@ -129,42 +129,57 @@ class Measurement {
         if (setting.sampler == out_.reference_setting.sampler)
             return out_.reference.seconds() / static_cast<double>(out_.reference.count()) *
                    setting.spp / out_.reference_setting.spp;
-        double fastest = std::numeric_limits<double>::infinity();
+        double fastest = std::numeric_limits<double>::infinity();  // of a light sample
         for (const auto& [name, p] : pilots_)
             fastest = std::min(fastest, p.rendering.render_seconds / drawn(p.setting));
         return std::isfinite(fastest) ? fastest * drawn(setting) : 0;
     }
 
-    // The dearest settings say what the others will take, and how good the reference has to be.
+    // The dearest settings say what the others will take, and how good the reference has to be. All
+    // lights come last: what they take may be guessed from the others.
     void choose_settings() {
         Progress progress("estimating", out_.options.quiet);
+        const auto count = static_cast<double>(out_.options.samplers.size());
         double done = 0;
-        for (const std::string& name : out_.options.samplers) {
-            const Sampler& sampler = find_sampler(name);
-            const double from = done;
-            done += 1.0 / out_.options.samplers.size();
-            progress.part(from, done);
-            std::vector<Setting> chosen;
-            for (const Setting& s : ladder_of(sampler, out_.options, renderer_)) {
-                const double seconds = expected(s);
-                if (seconds <= out_.options.most_seconds)
-                    chosen.push_back(s);
-                else
-                    out_.left_out.push_back(
-                        {s,
-                         fmt::format("one image would take about {}, more than --most-seconds {}",
-                                     in_words(seconds), out_.options.most_seconds)});
+        for (const bool all_lights : {false, true})
+            for (const std::string& name : out_.options.samplers) {
+                const Sampler& sampler = find_sampler(name);
+                if (sampler.all_lights != all_lights) continue;
+                progress.part(done / count, (done + 1) / count);
+                ++done;
+                choose_settings_of(sampler, progress);
             }
-            if (!chosen.empty() && !sampler.all_lights) {
-                Rendering rendering = renderer_.render(chosen.back(), out_.options.seed, progress);
-                out_.compile_seconds[name] += rendering.compile_seconds;
-                pilots_[name] = {chosen.back(), std::move(rendering)};
-            }
-            out_.settings.insert(out_.settings.end(), chosen.begin(), chosen.end());
-        }
         if (out_.settings.empty())
             throw InputError("--most-seconds {}: no sampler makes an image in that time",
                              out_.options.most_seconds);
+        std::ranges::stable_sort(out_.settings, {}, [&](const Setting& s) {
+            return std::ranges::find(out_.options.samplers, s.sampler);
+        });
+    }
+
+    void choose_settings_of(const Sampler& sampler, Progress& progress) {
+        const std::string name(sampler.name);
+        const std::vector<Setting> ladder = ladder_of(sampler, out_.options, renderer_);
+        const auto fits = [&](const Setting& s) {
+            return expected(s) <= out_.options.most_seconds;
+        };
+        // What a cheap setting took is too much for dear ones: look again after each step up.
+        while (!sampler.all_lights) {
+            const auto dearest = std::find_if(ladder.rbegin(), ladder.rend(), fits);
+            Pilot& pilot = pilots_.at(name);
+            if (dearest == ladder.rend() || drawn(*dearest) <= drawn(pilot.setting)) break;
+            pilot = {*dearest, renderer_.render(*dearest, out_.options.seed, progress)};
+            out_.compile_seconds[name] += pilot.rendering.compile_seconds;
+        }
+        for (const Setting& s : ladder) {
+            if (fits(s)) {
+                out_.settings.push_back(s);
+                continue;
+            }
+            out_.left_out.push_back(
+                {s, fmt::format("one image would take about {}, more than --most-seconds {}",
+                                in_words(expected(s)), out_.options.most_seconds)});
+        }
     }
 
     // The smallest error of an image that does not take all lights. The reference's own error adds
@@ -234,8 +249,7 @@ class Measurement {
                 "number",
                 renderer_.scene().file, setting.sampler, setting.light_samples, setting.spp, seed,
                 place_of_value(run.rendering.image, run.difference.first_bad));
-        if (seed == out_.options.seed)
-            out_.images.push_back({setting, pack_rgbe(run.rendering.image)});
+        if (seed == out_.options.seed) out_.images.push_back({setting, pack(run.rendering.image)});
         out_.compile_seconds[setting.sampler] += run.rendering.compile_seconds;
         run.rendering.image = {};
         run.difference.pixels = {};

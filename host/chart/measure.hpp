@@ -32,7 +32,7 @@ struct Run {
 /// The image of a setting's first seed.
 struct KeptImage {
     Setting setting;
-    std::vector<std::uint32_t> packed;  // see pack_rgbe()
+    PackedImage packed;
 };
 
 /// A sampler, or one of its settings, that is not measured, with the reason.

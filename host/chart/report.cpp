@@ -36,12 +36,11 @@ json encode_images(const Image& reference, const std::vector<ShownImage>& images
     Image small;
     const auto add = [&](const Image& image) {
         small = by == 1 ? image : shrink(image, by);
-        uris.push_back(rgbe_data_uri(pack_rgbe(small), small.width, small.height));
+        uris.push_back(data_uri(pack(small)));
         bytes += uris.back().get_ref<const std::string&>().size();
     };
     add(reference);
-    for (const ShownImage& shown : images)
-        add(unpack_rgbe(shown.image->packed, reference.width, reference.height));
+    for (const ShownImage& shown : images) add(unpack(shown.image->packed));
     json colors = json::array();
     for (const auto& color : error_colors()) colors.push_back(color);
     return {{"width", small.width}, {"height", small.height},

@@ -93,8 +93,7 @@ void write_chart(const std::string& output, const Chart& chart, const json& fact
         const fs::path folder = to;
         for (const ShownImage& s : shown) {
             const Difference d =
-                compare_images(unpack_rgbe(s.image->packed, reference.width, reference.height),
-                               reference, s.file, "the reference");
+                compare_images(unpack(s.image->packed), reference, s.file, "the reference");
             const std::string title =
                 fmt::format("{}, {} light samples, {} spp", s.image->setting.sampler,
                             s.image->setting.light_samples, s.image->setting.spp);

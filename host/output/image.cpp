@@ -118,43 +118,43 @@ float auto_exposure(const Image& image) {
     return 0.7f / *nth;
 }
 
-std::vector<std::uint32_t> pack_rgbe(const Image& image) {
-    std::vector<std::uint32_t> out(image.pixel_count());
-    for (std::size_t i = 0; i < out.size(); ++i) {
+PackedImage pack(const Image& image) {
+    const std::size_t count = image.pixel_count();
+    PackedImage out{image.width, image.height, std::vector<unsigned char>(5 * count)};
+    for (std::size_t i = 0; i < count; ++i) {
         const float* p = image.values.data() + 3 * i;
-        const float largest = std::max({p[0], p[1], p[2], 0.f});
-        if (!(largest > 1e-36f) || !std::isfinite(largest)) continue;
+        const float largest = std::max({std::abs(p[0]), std::abs(p[1]), std::abs(p[2])});
+        if (!(largest > 1e-36f) || !std::isfinite(p[0] + p[1] + p[2])) continue;
         int exponent = 0;
         // The largest code may be rounded up to 256.
         if (std::lround(256 * std::frexp(largest, &exponent)) == 256) ++exponent;
-        for (int c = 0; c < 3; ++c)
-            if (p[c] > 0)
-                out[i] |= static_cast<std::uint32_t>(std::lround(std::ldexp(p[c], 8 - exponent)))
-                          << (8 * c);
-        out[i] |= static_cast<std::uint32_t>(exponent + 128) << 24;
+        for (int c = 0; c < 3; ++c) {
+            out.planes[c * count + i] =
+                static_cast<unsigned char>(std::lround(std::ldexp(std::abs(p[c]), 8 - exponent)));
+            if (p[c] < 0) out.planes[4 * count + i] |= 1 << c;
+        }
+        out.planes[3 * count + i] = static_cast<unsigned char>(exponent + 128);
     }
     return out;
 }
 
-Image unpack_rgbe(const std::vector<std::uint32_t>& packed, unsigned width, unsigned height) {
-    Image out(width, height, {"R", "G", "B"});
-    for (std::size_t i = 0; i < packed.size(); ++i)
-        for (int c = 0; c < 3; ++c)
-            out.values[3 * i + c] = std::ldexp(static_cast<float>(packed[i] >> (8 * c) & 255),
-                                               static_cast<int>(packed[i] >> 24) - 136);
+Image unpack(const PackedImage& packed) {
+    Image out(packed.width, packed.height, {"R", "G", "B"});
+    const std::size_t count = out.pixel_count();
+    for (std::size_t i = 0; i < count; ++i)
+        for (int c = 0; c < 3; ++c) {
+            const float size = std::ldexp(static_cast<float>(packed.planes[c * count + i]),
+                                          packed.planes[3 * count + i] - 136);
+            out.values[3 * i + c] = (packed.planes[4 * count + i] >> c & 1) != 0 ? -size : size;
+        }
     return out;
 }
 
-std::string rgbe_data_uri(const std::vector<std::uint32_t>& packed, unsigned width,
-                          unsigned height) {
-    std::vector<unsigned char> planes(4 * packed.size());
-    for (std::size_t i = 0; i < packed.size(); ++i)
-        for (std::size_t c = 0; c < 4; ++c)
-            planes[c * packed.size() + i] = static_cast<unsigned char>(packed[i] >> (8 * c));
-    const OIIO::ImageSpec spec(static_cast<int>(width), static_cast<int>(4 * height), 1,
-                               OIIO::TypeDesc::UINT8);
+std::string data_uri(const PackedImage& packed) {
+    const OIIO::ImageSpec spec(static_cast<int>(packed.width), static_cast<int>(5 * packed.height),
+                               1, OIIO::TypeDesc::UINT8);
     const std::vector<unsigned char> png =
-        encode("rgbe.png", spec, OIIO::TypeDesc::UINT8, planes.data());
+        encode("planes.png", spec, OIIO::TypeDesc::UINT8, packed.planes.data());
     return "data:image/png;base64," +
            OIIO::Strutil::base64_encode({reinterpret_cast<const char*>(png.data()), png.size()});
 }

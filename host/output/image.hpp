@@ -2,7 +2,6 @@
 // Images in memory and in files. Only host/output/ knows OpenImageIO.
 #pragma once
 
-#include <cstdint>
 #include <glm/vec3.hpp>
 #include <map>
 #include <string>
@@ -44,16 +43,21 @@ void write_exr(const std::string& path, const std::vector<Image>& layers, const 
 /// Writes the first three channels, times `scale`, as an 8-bit sRGB PNG, in the same way.
 void write_png(const std::string& path, const Image& image, float scale, const Metadata& metadata);
 
-/// Radiance's RGBE: R, G, B and a shared exponent e, a value being its code x 2^(e - 136). [y *
-/// width + x], R in the lowest byte. Negative values and what is no number become 0.
-[[nodiscard]] std::vector<std::uint32_t> pack_rgbe(const Image& image);
-[[nodiscard]] Image unpack_rgbe(const std::vector<std::uint32_t>& packed, unsigned width,
-                                unsigned height);
+/// An image in 5 bytes per pixel, planes one after another: [plane * pixels + y * width + x].
+/// Planes R, G, B and e are Radiance's RGBE: a value's size is its code x 2^(e - 136). Bit c of the
+/// fifth plane is set where channel c is negative, as noise may be. What is no number becomes 0.
+struct PackedImage {
+    unsigned width = 0;
+    unsigned height = 0;
+    std::vector<unsigned char> planes;
+};
 
-/// A grey PNG of RGBE's four planes, one below another, as a data URI. (Not as four channels: a
+[[nodiscard]] PackedImage pack(const Image& image);
+[[nodiscard]] Image unpack(const PackedImage& packed);
+
+/// A grey PNG of all planes, one below another, as a data URI. (Not as channels of one pixel: a
 /// browser multiplies colours with alpha.)
-[[nodiscard]] std::string rgbe_data_uri(const std::vector<std::uint32_t>& packed, unsigned width,
-                                        unsigned height);
+[[nodiscard]] std::string data_uri(const PackedImage& packed);
 
 /// The scale that brings the 90th percentile of the luminances of `image` that are not 0 to 0.7.
 [[nodiscard]] float auto_exposure(const Image& image);
