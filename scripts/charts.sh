@@ -14,6 +14,8 @@ if [[ ${1:-} == --only ]]; then
     names=${2:?--only needs names}
     shift 2
 fi
+[[ " $* " == *" --seeds "* ]] || set -- "$@" --seeds 3
+[[ " $* " == *" --most-seconds "* ]] || set -- "$@" --most-seconds 300
 scripts/install.sh
 cmake -G Ninja -B build >/dev/null
 cmake --build build --target manylight
@@ -25,6 +27,6 @@ for name in ${names//,/ }; do
         city) height=90 ;;
     esac
     build/manylight scene "$name" -o "build/charts/$name.glb"
-    build/manylight chart "build/charts/$name.glb" --height $height --seeds 3 --most-seconds 300 \
+    build/manylight chart "build/charts/$name.glb" --height $height \
         -o "build/charts/$name" "$@"
 done

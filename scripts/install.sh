@@ -3,8 +3,9 @@
 #
 # usage: scripts/install.sh [--tests] [--no-intel]
 #   --tests     also what the tests need: GoogleTest, Embree (for manylight bench), Python, Clang (to
-#               lint kernels), Chromium (to click through reports), and Intel's OpenCL runtime for CPUs, where the processor is x86-64
-#               (830 MB, into ~/.cache/manylight), so that two vendors' compilers run every kernel
+#               lint kernels), Chromium and Selenium (to click through reports), and Intel's OpenCL
+#               runtime for CPUs, where the processor is x86-64 (830 MB, into ~/.cache/manylight), so
+#               that two vendors' compilers run every kernel
 #   --no-intel  without Intel's runtime
 set -euo pipefail
 
