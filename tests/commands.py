@@ -513,9 +513,10 @@ class CommandTest(unittest.TestCase):
 
     def test_chart_converges_its_reference(self):
         chart, run = self.chart("--emitter-points", 0, "--samplers", "adaptive", "--light-samples",
-                                4, "--spp", 1, "--seeds", 2)
+                                16, "--spp", 8, "--seeds", 2)
         reference = chart["reference"]
         self.assertEqual(run.stderr, "")
+        self.assertGreater(reference["images"], 4)
         self.assertLess(100 * reference["relmse"], reference["judges_relmse"])
         self.assertGreater(reference["luminance_standard_error"], 0)
         self.assertFalse(chart["settings"][0]["limited_by_reference"])

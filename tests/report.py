@@ -122,6 +122,8 @@ class ReportTest(unittest.TestCase):
                                    delta=0.006 * setting["relmse"]["median"])
         for metric in ("relmse", "mape"):
             self.choose("metric", metric)
+            self.assertEqual(self.js("document.querySelector('#ratios-table th:nth-child(2)')"
+                                     ".textContent").lower(), metric)
             for at, base in enumerate(s for s in self.chart["settings"]
                                       if s["sampler"] == "adaptive"):
                 self.select("baseline-setting", at)
