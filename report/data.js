@@ -26,7 +26,7 @@ const cssColor = (name) => getComputedStyle(document.documentElement).getPropert
 function number(value) {
   if (value === 0) return "0";
   const size = Math.abs(value);
-  if (size < 1e-3 || size >= 1e5) return value.toExponential(2).replace("e+", "e");
+  if (size < 1e-3 || size >= 1e5) return value.toExponential(2).replace(/\.?0*e\+?/, "e");
   return String(Number(value.toPrecision(3)));
 }
 const range = (q) => `${number(q.median)} (${number(q.lower)} to ${number(q.upper)})`;

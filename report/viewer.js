@@ -131,7 +131,7 @@ function makeCrop(index) {
       lines.push(make("br"), text);
     lines.push(make("br"), make("span", { className: "here" }));
   }
-  const button = make("button", { type: "button", value: index }, make("canvas"), ...lines);
+  const button = make("button", { type: "button", value: index }, make("canvas"), make("span", {}, ...lines));
   button.querySelector("canvas").setAttribute("aria-hidden", "true");
   button.addEventListener("click", () => { element("image-b").value = index; draw(); });
   return button;
