@@ -15,7 +15,7 @@ if [[ ${1:-} == --only ]]; then
     shift 2
 fi
 [[ " $* " == *" --seeds "* ]] || set -- "$@" --seeds 3
-[[ " $* " == *" --most-seconds "* ]] || set -- "$@" --most-seconds 300
+[[ " $* " == *" --most-seconds "* ]] || set -- "$@" --most-seconds 900
 scripts/install.sh
 cmake -G Ninja -B build >/dev/null
 cmake --build build --target manylight

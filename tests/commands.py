@@ -476,7 +476,7 @@ class CommandTest(unittest.TestCase):
         self.assertEqual(len(list((self.folder / "cache").iterdir())), 2)
 
     def test_chart_leaves_out_what_takes_too_long(self):
-        chart, run = self.chart("--seeds", 2, "--most-seconds", 0.02, "--samplers",
+        chart, run = self.chart("--seeds", 2, "--most-seconds", 0.05, "--samplers",
                                 "contribution,uniform", "--light-samples", "1,1000,60000", "--spp",
                                 1)
         left = [(s["sampler"], s["light_samples"]) for s in chart["left_out"]]
@@ -484,6 +484,12 @@ class CommandTest(unittest.TestCase):
         self.assertNotIn(("uniform", 1), left)
         self.assertIn("left out: uniform, 60000 light samples, 1 spp", run.stdout)
         self.assertNotIn(60000, [s["light_samples"] for s in chart["settings"]])
+        chart, run = self.chart("--seeds", 1, "--most-seconds", 0.05, "--samplers",
+                                "exhaustive,uniform", "--baseline", "uniform", "--light-samples", 60000,
+                                "--spp", 1)
+        self.assertEqual([s["sampler"] for s in chart["settings"]], ["exhaustive"])
+        self.assertIn("warning: --baseline uniform", run.stderr)
+        self.assertEqual(chart["baseline"], "exhaustive")
 
     def test_an_interrupted_chart_goes_on(self):
         arguments = ["chart", self.cornell, "--emitter-points", "0", "--height", "48", "--samplers",

@@ -155,6 +155,11 @@ class Measurement {
         std::ranges::stable_sort(out_.settings, {}, [&](const Setting& s) {
             return std::ranges::find(out_.options.samplers, s.sampler);
         });
+        std::string& baseline = out_.options.baseline;
+        if (std::ranges::count(out_.settings, baseline, &Setting::sampler) > 0) return;
+        fmt::print(stderr, "warning: --baseline {}: all its settings are left out; {} is taken\n",
+                   baseline, out_.settings.front().sampler);
+        baseline = out_.settings.front().sampler;
     }
 
     void choose_settings_of(const Sampler& sampler, Progress& progress) {
