@@ -263,4 +263,16 @@ TEST(chart, reports_hold_any_text) {
     EXPECT_EQ(report.find("src=\"http"), std::string::npos);
 }
 
+// Noise does not compress: 12 MB of it are shown at half the size.
+TEST(chart, reports_stay_small) {
+    Image noise(2000, 1600, {"R", "G", "B"});
+    std::mt19937 random(1);
+    std::uniform_real_distribution<float> value(0.5f, 1);
+    for (float& v : noise.values) v = value(random);
+    const std::string report = make_report({}, noise, {});
+    EXPECT_LT(report.size(), 15'000'000u);
+    EXPECT_NE(report.find(R"("smaller_by":2)"), std::string::npos);
+    EXPECT_NE(report.find(R"("width":1000)"), std::string::npos);
+}
+
 }  // namespace manylight
