@@ -3,8 +3,9 @@
 #
 # usage: scripts/install.sh [--tests] [--no-intel]
 #   --tests     also what the tests need: GoogleTest, Embree (for manylight bench), Python, Clang (to
-#               lint kernels), and Intel's OpenCL runtime for CPUs, where the processor is x86-64
-#               (830 MB, into ~/.cache/manylight), so that two vendors' compilers run every kernel
+#               lint kernels), Chromium and Selenium (to click through reports), and Intel's OpenCL
+#               runtime for CPUs, where the processor is x86-64 (830 MB, into ~/.cache/manylight), so
+#               that two vendors' compilers run every kernel
 #   --no-intel  without Intel's runtime
 set -euo pipefail
 
@@ -22,10 +23,11 @@ packages=(
     g++ cmake ninja-build
     ocl-icd-opencl-dev opencl-c-headers opencl-clhpp-headers pocl-opencl-icd
     libopenimageio-dev openimageio-tools libglm-dev libtinygltf-dev nlohmann-json3-dev
-    libcli11-dev libfmt-dev fonts-dejavu-core
+    libcli11-dev libfmt-dev libjs-chart.js fonts-dejavu-core
 )
 if $tests; then
-    packages+=(libgtest-dev libembree-dev python3 python3-venv clang-15)
+    packages+=(libgtest-dev libembree-dev python3 python3-venv clang-15
+        chromium chromium-driver python3-selenium)
 fi
 
 missing=()

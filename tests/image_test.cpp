@@ -10,6 +10,7 @@
 #include <fstream>
 
 #include "error.hpp"
+#include "output/error_picture.hpp"
 #include "output/metrics.hpp"
 #include "output/write_file.hpp"
 #include "support.hpp"
@@ -138,10 +139,57 @@ TEST(image, relmse_by_hand) {
     const Difference d = compare_images(image, reference, "a", "b");
     EXPECT_NEAR(d.relmse, 0.25 * 0.25 / (0.25 * 0.25 + 0.01) / 6, 1e-9);
     EXPECT_NEAR(d.rmse, std::sqrt(1. / 6), 1e-9);
-    EXPECT_NEAR(d.bias, 1. / 12, 1e-9);
+    EXPECT_NEAR(d.mape, 0.25 / 0.26 / 6, 1e-9);
+    EXPECT_NEAR(d.bias, 0.2126 / 4, 1e-9);
+    EXPECT_NEAR(d.pixels[0], 2 * d.relmse, 1e-7);
+    EXPECT_EQ(d.pixels[1], 0);
     image.values[5] = std::numeric_limits<float>::quiet_NaN();
     EXPECT_EQ(compare_images(image, reference, "a", "b").bad, 1u);
+    EXPECT_EQ(compare_images(image, reference, "a", "b").first_bad, 5u);
+    EXPECT_EQ(place_of_value(image, 5), "pixel 1, 0, channel B");
+    EXPECT_THROW((void)compare_images(reference, image, "a", "b"), InputError);
     EXPECT_THROW((void)compare_images(gradient(3, 1), reference, "a", "b"), InputError);
+}
+
+TEST(image, error_of_the_worst_pixels) {
+    Image reference(100, 20, {"R", "G", "B"});
+    std::ranges::fill(reference.values, 1.f);
+    Image image = reference;
+    // 2000 pixels: of an error of 100, two have 20 each, the next 18 have 2 each.
+    for (int i = 0; i < 2000; ++i) {
+        const double error = i < 2 ? 20 : i < 20 ? 2 : 24. / 1980;
+        for (int c = 0; c < 3; ++c)
+            image.values[3 * (7 * i % 2000) + c] = 1 + static_cast<float>(std::sqrt(error));
+    }
+    const Difference d = compare_images(image, reference, "a", "b");
+    EXPECT_NEAR(d.worst_thousandth, 0.4, 1e-4);
+    EXPECT_NEAR(d.worst_hundredth, 0.76, 1e-4);
+    EXPECT_EQ(compare_images(reference, reference, "a", "b").worst_hundredth, 0);
+}
+
+// Black where there is no error, the scale's other end where it is large; small images are
+// magnified.
+TEST(image, error_picture) {
+    ErrorPanel panel{"a", 4, 2, std::vector<float>(8)};
+    panel.errors[5] = 1000;
+    const Image picture = draw_error_picture({panel, panel});
+    EXPECT_EQ(picture.width, 3 * 16 + 2 * 256u);
+    const auto colors = error_colors();
+    const auto expect_color = [&](unsigned x, unsigned y, std::size_t entry) {
+        for (int c = 0; c < 3; ++c)
+            EXPECT_NEAR(picture.at(x, y)[c],
+                        linear_from_srgb(static_cast<float>(colors[entry][c]) / 255), 1e-6)
+                << x << " " << y;
+    };
+    const unsigned top = 16 + 20;
+    for (const unsigned left : {16, 2 * 16 + 256}) {
+        expect_color(left, top, 0);
+        expect_color(left + 64, top + 64, 255);
+        expect_color(left + 127, top + 127, 255);
+        expect_color(left + 128, top + 127, 0);
+    }
+    EXPECT_LT(colors[0][0] + colors[0][1] + colors[0][2], 20);
+    EXPECT_GT(colors[255][0] + colors[255][1] + colors[255][2], 550);
 }
 
 }  // namespace manylight

@@ -47,17 +47,6 @@ std::size_t judge(const RaySet& set, const reference::Tracer& tracer, float reac
 
 }  // namespace
 
-Quartiles quartiles(std::vector<double> values) {
-    std::ranges::sort(values);
-    const auto at = [&](double share) {
-        const double place = share * static_cast<double>(values.size() - 1);
-        const auto i = static_cast<std::size_t>(place);
-        const double next = values[std::min(i + 1, values.size() - 1)];
-        return values[i] + (place - static_cast<double>(i)) * (next - values[i]);
-    };
-    return {at(0.25), at(0.5), at(0.75)};
-}
-
 struct DeviceTracer::Shared {
     Device device;
     Arguments arguments;

@@ -7,14 +7,9 @@
 #include "bench/embree.hpp"
 #include "reference/tracing.hpp"
 #include "stages/device_scene.hpp"
+#include "statistics.hpp"
 
 namespace manylight {
-
-/// A median with its quartiles.
-struct Quartiles {
-    double lower = 0, median = 0, upper = 0;
-};
-[[nodiscard]] Quartiles quartiles(std::vector<double> values);
 
 /// What one way to trace a set of rays took.
 struct TracingResult {

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "chart/measure.hpp"
 #include "pipeline/frame.hpp"
 
 namespace manylight {
@@ -73,6 +74,21 @@ struct BenchArguments {
     unsigned bvh_block = 0;
 };
 
+struct CompareArguments {
+    std::string image;
+    std::string other;      // the reference, unless there is one below
+    std::string reference;  // what both are judged by
+    std::string output;     // .png, picture of the errors
+    bool json = false;
+};
+
+struct ChartArguments {
+    SceneArguments scene;
+    ChartOptions options;
+    std::size_t memory = 0;  // see RenderOptions
+    std::string output;      // folder; empty: named after the scene
+};
+
 // Each returns the program's exit status and throws InputError or RuntimeError.
 int run_render(const RenderArguments& arguments);
 int run_inspect(const InspectArguments& arguments);
@@ -80,7 +96,8 @@ int run_verify(const VerifyArguments& arguments);
 int run_scene(const BuiltinArguments& arguments);
 int run_devices();
 int run_bench(const BenchArguments& arguments);
-int run_compare(const std::string& image, const std::string& reference, bool json);
+int run_chart(const ChartArguments& arguments);
+int run_compare(const CompareArguments& arguments);
 
 /// Parses the command line and runs what it asks for.
 int run_program(int argc, char** argv);

@@ -69,7 +69,7 @@ constexpr std::uint64_t largest_uint = 4294967295;
 constexpr uint most_spp = 1 << 20;
 
 // What a command that renders a scene needs beside its file.
-void add_view(CLI::App& command, SceneArguments& scene) {
+void add_view(CLI::App& command, SceneArguments& scene, unsigned height = 512) {
     command.add_option("--camera", scene.camera, "camera by name (default: the file's first)");
     command
         .add_option("--emitter-points", scene.emitter_points,
@@ -82,17 +82,17 @@ void add_view(CLI::App& command, SceneArguments& scene) {
         ->check(whole(1, 4096));
     command.add_option("--width", scene.width, "image width (default: from the height)")
         ->check(whole(1, 65536));
-    command.add_option("--height", scene.height, "image height (default: 512)")
+    command.add_option("--height", scene.height, fmt::format("image height (default: {})", height))
         ->check(whole(1, 65536));
 }
 
-void add_scene(CLI::App& command, SceneArguments& scene) {
+void add_scene(CLI::App& command, SceneArguments& scene, unsigned height = 512) {
     command.add_option("file", scene.file, "glTF 2.0 scene, .gltf or .glb")
         ->required()
         ->check([](const std::string& file) {
             return file.empty() ? std::string("the name is empty") : std::string();
         });
-    add_view(command, scene);
+    add_view(command, scene, height);
 }
 
 void add_clusters(CLI::App& command, ClusterOptions& clusters) {
@@ -119,9 +119,11 @@ void add_clusters(CLI::App& command, ClusterOptions& clusters) {
         ->group(group);
 }
 
-std::string sampler_list() {
+std::string sampler_list(bool automatic) {
     std::string text = "\nSamplers:\n";
-    text += fmt::format("  {:<24}{}\n", "auto",
+    if (automatic)
+        text +=
+            fmt::format("  {:<24}{}\n", "auto",
                         "exhaustive where lights are no more than light samples, else adaptive");
     for (const Sampler& s : all_samplers())
         text +=
@@ -190,7 +192,7 @@ void add_render(CLI::App& app, std::function<int()>& run) {
         "most memory on the device, such as 512M (default: half of it, at most 2G)");
     command->add_flag("-q,--quiet", arguments->quiet, "print errors and warnings only");
     add_clusters(*command, o.clusters);
-    command->footer(sampler_list() + aov_list() +
+    command->footer(sampler_list(true) + aov_list() +
                     "\nExamples:\n"
                     "  manylight render scene.glb\n"
                     "  manylight render scene.glb -o a.exr -o a.png --spp 16 --light-samples 8\n"
@@ -333,6 +335,86 @@ void add_scene_command(CLI::App& app, std::function<int()>& run) {
     command->callback([&run, arguments] { run = [arguments] { return run_scene(*arguments); }; });
 }
 
+void add_chart(CLI::App& app, std::function<int()>& run) {
+    auto arguments = std::make_shared<ChartArguments>();
+    CLI::App* command = app.add_subcommand(
+        "chart",
+        "chart speed and accuracy of samplers on a scene, in a report to open in a browser");
+    add_scene(*command, arguments->scene, 256);
+    ChartOptions& o = arguments->options;
+    command->add_option("-o,--output", arguments->output,
+                        "folder (default: the scene's name with -chart, here)");
+    const auto add_list = [&](const char* name, auto& values, const char* help) {
+        return command->add_option(name, values, help)->delimiter(',')->allow_extra_args(false);
+    };
+    add_list("--samplers", o.samplers, "see below (default: all)");
+    add_list("--light-samples", o.light_samples, "light samples per pixel sample")
+        ->check(whole(1, 65536))
+        ->default_str("1,4,16,64");
+    add_list("--spp", o.spp, "pixel samples, all at the pixel's centre")
+        ->check(whole(1, most_spp))
+        ->default_str("1,4");
+    command->add_option("--seeds", o.seeds, "how often each setting is rendered")
+        ->check(whole(1, 1000))
+        ->capture_default_str();
+    command->add_option("--seed", o.seed, "the first seed")
+        ->check(whole(0, 2'000'000'000))
+        ->capture_default_str();
+    command->add_option("--baseline", o.baseline,
+                        "sampler that others are compared with (default: adaptive)");
+    command
+        ->add_option(
+            "--most-seconds", o.most_seconds,
+            "for all seeds of a setting: it has fewer where they would take longer, and is "
+            "left out where one would")
+        ->check(number(0.001, 1e9))
+        ->capture_default_str();
+    command
+        ->add_option("--reference-time", o.reference_seconds,
+                     "seconds to spend on the reference (default: until its own error is 100 times "
+                     "below the smallest that it judges)")
+        ->check(number(0.001, 1e9));
+    command->add_option("--cache", o.cache,
+                        "folder of references (default: manylight/references in XDG_CACHE_HOME)");
+    command->add_option_function<std::string>(
+        "--memory",
+        [a = arguments.get()](const std::string& text) { a->memory = parse_bytes(text); },
+        "most memory on the device, such as 512M (default: half of it, at most 2G)");
+    command->add_flag("-q,--quiet", o.quiet, "print errors and warnings only");
+    command->footer(sampler_list(false) +
+                    "\nWrites report.html, chart.json, reference.exr and pictures of errors. An "
+                    "interrupted reference goes on where it was.\n\nExamples:\n"
+                    "  manylight chart scene.glb\n"
+                    "  manylight chart scene.glb --samplers lighttree,adaptive --seeds 10 -o "
+                    "two-samplers\n"
+                    "  manylight chart scene.glb --light-samples 4 --spp 1,4,16 --height 512\n");
+    command->callback([&run, arguments] {
+        for (const std::string& name : arguments->options.samplers) (void)find_sampler(name);
+        run = [arguments] { return run_chart(*arguments); };
+    });
+}
+
+void add_compare(CLI::App& app, std::function<int()>& run) {
+    auto arguments = std::make_shared<CompareArguments>();
+    CLI::App* command =
+        app.add_subcommand("compare", "measure an image's error against another, or two images'");
+    command->add_option("image", arguments->image, "image to judge")->required();
+    command
+        ->add_option("reference", arguments->other,
+                     "what it should be; with --ref, a second image to judge")
+        ->required();
+    command->add_option("--ref", arguments->reference, "what both should be");
+    command->add_option("-o,--output", arguments->output, "picture of the errors, .png");
+    command->add_flag("--json", arguments->json, "print JSON");
+    command->footer(
+        "\nReads R, G, B of any image, also another renderer's: floats as linear values, integers "
+        "as sRGB codes.\nExits with 3 where an image to judge holds what is no finite "
+        "number.\n\nExamples:\n"
+        "  manylight compare render.exr reference.exr\n"
+        "  manylight compare a.exr b.exr --ref reference.exr -o errors.png\n");
+    command->callback([&run, arguments] { run = [arguments] { return run_compare(*arguments); }; });
+}
+
 }  // namespace
 
 int run_program(int argc, char** argv) {
@@ -351,15 +433,8 @@ int run_program(int argc, char** argv) {
     app.add_subcommand("devices", "list OpenCL devices and what each can do")->callback([&run] {
         run = run_devices;
     });
-    std::string image;
-    std::string reference;
-    bool json = false;
-    CLI::App* compare = app.add_subcommand("compare", "measure an image's error against another");
-    compare->add_option("image", image, "image to judge")->required();
-    compare->add_option("reference", reference, "what it should be")->required();
-    compare->add_flag("--json", json, "print JSON");
-    compare->footer("\nExample:\n  manylight compare render.exr reference.exr\n");
-    compare->callback([&] { run = [&] { return run_compare(image, reference, json); }; });
+    add_chart(app, run);
+    add_compare(app, run);
     try {
         app.parse(argc, argv);
     } catch (const CLI::Success& help) {

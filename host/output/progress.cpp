@@ -30,7 +30,7 @@ Progress::~Progress() {
 }
 
 void Progress::set(double share) {
-    share_ = std::clamp(share, share_, 1.0);
+    share_ = std::clamp(from_ + share * (to_ - from_), share_, 1.0);
     const auto now = std::chrono::steady_clock::now();
     if (!shown_ || now - drawn_ < std::chrono::milliseconds(100)) return;
     drawn_ = now;
@@ -41,6 +41,11 @@ void Progress::set(double share) {
                width - filled, 100 * share_,
                share_ > 0 ? duration(elapsed * (1 - share_) / share_) : "?");
     std::fflush(stderr);
+}
+
+void Progress::part(double from, double to) {
+    from_ = from;
+    to_ = to;
 }
 
 }  // namespace manylight

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: MIT
+#include "chart/renderer.hpp"
+
+namespace manylight {
+
+Rendering Renderer::render(const Setting& setting, uint seed, Progress& progress) {
+    RenderOptions options;
+    options.sampler = setting.sampler;
+    options.light_samples = setting.light_samples;
+    options.spp = setting.spp;
+    options.seed = seed;
+    options.width = width_;
+    options.height = height_;
+    options.memory = memory_;
+    options.pixel_centre = true;
+    options.hide_emitters = true;
+    const std::map<std::string, double> before = device_.stage_seconds();
+    const double compiled = device_.compile_seconds();
+    Frame frame(device_, scene_, bvh_, camera_, options);
+    frame.prepare();
+    FrameResult result = frame.render(progress);
+    Rendering out;
+    for (const auto& [stage, after] : device_.stage_seconds()) {
+        const double took = after - (before.contains(stage) ? before.at(stage) : 0);
+        if (took > 0) out.stage_seconds[stage] = took;
+    }
+    out.image = std::move(result.image);
+    out.prepare_seconds = result.prepare_seconds;
+    out.render_seconds = result.render_seconds;
+    out.compile_seconds = device_.compile_seconds() - compiled;
+    out.primary_rays = result.primary_rays;
+    out.shadow_rays = result.shadow_rays;
+    return out;
+}
+
+bool Renderer::is_exact(const Sampler& sampler) const {
+    const Features features = find_features(scene_);
+    return sampler.all_lights && !features.kinds[LIGHT_TRIANGLE] && !features.kinds[LIGHT_QUAD];
+}
+
+}  // namespace manylight

@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: MIT
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "chart/folder.hpp"
+#include "chart/report.hpp"
+#include "clock.hpp"
+#include "commands/commands.hpp"
+#include "error.hpp"
+#include "output/error_picture.hpp"
+#include "output/write_file.hpp"
+
+namespace manylight {
+namespace {
+
+using nlohmann::json;
+namespace fs = std::filesystem;
+
+constexpr unsigned default_height = 256;
+
+// As a shell takes it for one word.
+std::string quote(const std::string& word) {
+    const bool plain = !word.empty() && std::ranges::all_of(word, [](unsigned char c) {
+        return std::isalnum(c) != 0 || std::string_view("_./,:=+-").find(c) != std::string::npos;
+    });
+    if (plain) return word;
+    std::string out = "'";
+    for (const char c : word) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
+    return out + "'";
+}
+
+std::string join(const std::vector<uint>& values) {
+    return fmt::format("{}", fmt::join(values, ","));
+}
+
+// The scene with the options that say how it is seen, as for manylight render.
+std::string view_options(const ChartArguments& arguments, const LoadedScene& loaded) {
+    const SceneArguments& scene = arguments.scene;
+    std::string out = quote(scene.file);
+    if (!scene.camera.empty()) out += " --camera " + quote(scene.camera);
+    if (scene.emitter_points) out += fmt::format(" --emitter-points {}", *scene.emitter_points);
+    if (!scene.device.empty()) out += " --device " + quote(scene.device);
+    if (scene.threads > 0) out += fmt::format(" --threads {}", scene.threads);
+    out += fmt::format(" --width {} --height {}", loaded.width, loaded.height);
+    if (arguments.memory > 0) out += fmt::format(" --memory {}", arguments.memory);
+    return out;
+}
+
+std::string command_of(const ChartOptions& o, const std::string& view, const std::string& output) {
+    std::string out = fmt::format(
+        "manylight chart {} --samplers {} --light-samples {} --spp {} --seeds {} --seed {} "
+        "--baseline {} --most-seconds {}",
+        view, fmt::join(o.samplers, ","), join(o.light_samples), join(o.spp), o.seeds, o.seed,
+        o.baseline, o.most_seconds);
+    if (o.reference_seconds > 0) out += fmt::format(" --reference-time {}", o.reference_seconds);
+    return out + " -o " + quote(output);
+}
+
+// The ladder in order, each step once; all samplers unless some are named.
+ChartOptions complete(ChartOptions options) {
+    for (std::vector<uint>* steps : {&options.light_samples, &options.spp}) {
+        std::ranges::sort(*steps);
+        steps->erase(std::unique(steps->begin(), steps->end()), steps->end());
+    }
+    std::vector<std::string> samplers;
+    for (const Sampler& sampler : all_samplers())
+        if (options.samplers.empty() ||
+            std::ranges::count(options.samplers, std::string(sampler.name)) > 0)
+            samplers.emplace_back(sampler.name);
+    options.samplers = samplers;
+    const auto charted = [&](const std::string& name) {
+        return std::ranges::count(samplers, name) > 0;
+    };
+    if (options.baseline.empty())
+        options.baseline = charted("adaptive") ? "adaptive" : samplers.front();
+    else if (!charted(options.baseline))
+        throw InputError("--baseline {}: is not among the samplers of the chart ({})",
+                         options.baseline, fmt::join(samplers, ", "));
+    return options;
+}
+
+void write_text(const fs::path& path, const std::string& text) {
+    write_file(path.string(), std::as_bytes(std::span(text)));
+}
+
+void write_chart(const std::string& output, const Chart& chart, const json& facts,
+                 const std::string& report, const std::vector<ShownImage>& shown) {
+    const Image reference = chart.reference.image();
+    const ErrorEstimate error = chart.reference.error();
+    write_chart_folder(output, [&](const std::string& to) {
+        const fs::path folder = to;
+        for (const ShownImage& s : shown) {
+            const Difference d =
+                compare_images(unpack(s.image->packed), reference, s.file, "the reference");
+            const std::string title =
+                fmt::format("{}, {} light samples, {} spp", s.image->setting.sampler,
+                            s.image->setting.light_samples, s.image->setting.spp);
+            write_png((folder / s.file).string(),
+                      draw_error_picture({{title, reference.width, reference.height, d.pixels}}), 1,
+                      {});
+        }
+        write_exr((folder / "reference.exr").string(), {reference, error.pixels},
+                  {{"Software", "manylight " MANYLIGHT_VERSION},
+                   {"manylight:relmse", static_cast<float>(error.relmse)}});
+        write_text(folder / "report.html", report);
+        write_text(folder / "chart.json",
+                   facts.dump(1, ' ', false, json::error_handler_t::replace) + "\n");
+    });
+}
+
+void print_summary(const Chart& chart, const std::vector<SettingSummary>& summaries) {
+    fmt::print("\n{:<24}{:>8}{:>5}{:>11}{:>12}{:>10}{:>10}{:>8}\n", "sampler", "samples", "spp",
+               "seconds", "relMSE", "MAPE", "bias", "z");
+    for (const SettingSummary& s : summaries)
+        fmt::print("{:<24}{:>8}{:>5}{:>11.4f}{:>12.3g}{:>10.3g}{:>9.3f}%{:>8}\n", s.setting.sampler,
+                   s.setting.light_samples, s.setting.spp, s.seconds.median, s.relmse.median,
+                   s.mape.median, 100 * s.bias, s.z ? fmt::format("{:.1f}", *s.z) : "-");
+    for (const LeftOut& left : chart.left_out)
+        fmt::print("left out: {}, {} light samples, {} spp: {}\n", left.setting.sampler,
+                   left.setting.light_samples, left.setting.spp, left.reason);
+    const double own = chart.reference.error().relmse;
+    fmt::print(
+        "\nreference: {}, {} spp, its own relMSE {:.3g}; the smallest that it judges {:.3g}\n",
+        chart.reference_setting.sampler, chart.reference_setting.spp * chart.reference.count(), own,
+        chart.smallest_error);
+}
+
+}  // namespace
+
+int run_chart(const ChartArguments& arguments) {
+    const auto start = Clock::now();
+    std::string output = arguments.output;
+    if (output.empty()) output = fs::path(arguments.scene.file).stem().string() + "-chart";
+    check_chart_folder("--output", output);
+    const ChartOptions options = complete(arguments.options);
+    SceneArguments scene = arguments.scene;
+    if (scene.width == 0 && scene.height == 0) scene.height = default_height;
+    const LoadedScene loaded = load(scene);
+    if (loaded.scene.lights.empty())
+        throw InputError("{}: has no lights: there is nothing to chart", loaded.scene.file);
+    const double load_seconds = seconds_since(start);
+    const Device device = Device::open(scene.device, scene.threads);
+    const auto build_start = Clock::now();
+    const unsigned lanes = lanes_for(device.info());
+    const WideBvh bvh =
+        build_wide_bvh(loaded.scene, lanes, lanes, reach_of(loaded.scene, loaded.camera));
+    const double bvh_seconds = seconds_since(build_start);
+    Renderer renderer(device, loaded.scene, bvh, loaded.camera, loaded.width, loaded.height,
+                      arguments.memory);
+    if (!options.quiet)
+        fmt::print("{}: {} triangles, {} lights, camera '{}', {} x {}\n{} ({})\n",
+                   loaded.scene.file, loaded.scene.triangle_count(), loaded.scene.lights.size(),
+                   loaded.view.name, loaded.width, loaded.height, device.info().name,
+                   device.info().platform);
+    const Chart chart = measure_chart(renderer, options);
+    const std::vector<SettingSummary> summaries = summarise(chart);
+    const std::vector<ShownImage> shown = choose_images(chart, summaries);
+    const std::string view = view_options(arguments, loaded);
+    json facts = chart_json(chart, renderer, summaries, shown,
+                            {.scene = {{"file", loaded.scene.file},
+                                       {"camera", loaded.view.name},
+                                       {"triangles", loaded.scene.triangle_count()},
+                                       {"lights", loaded.scene.lights.size()},
+                                       {"emitter_points", loaded.emitter_points}},
+                             .seconds = {{"load", load_seconds}, {"bvh", bvh_seconds}},
+                             .command = command_of(chart.options, view, output),
+                             .view = view});
+    facts["files"] = {"chart.json", "report.html", "reference.exr"};
+    for (const ShownImage& s : shown) facts["files"].push_back(s.file);
+    facts["seconds"]["total"] = seconds_since(start);
+    const std::string report = make_report(facts, chart.reference.image(), shown);
+    write_chart(output, chart, facts, report, shown);
+    const double own = chart.reference.error().relmse;
+    if (own * reference_ratio > chart.smallest_error && chart.smallest_error > 0)
+        fmt::print(stderr,
+                   "warning: the reference's own relMSE {:.3g} is only {:.3g} times below the "
+                   "smallest that it judges\n",
+                   own, chart.smallest_error / own);
+    if (options.quiet) return 0;
+    print_summary(chart, summaries);
+    fmt::print("{:.0f} s; wrote {}\n", seconds_since(start),
+               (fs::path(output) / "report.html").string());
+    return 0;
+}
+
+}  // namespace manylight
