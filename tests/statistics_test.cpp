@@ -211,7 +211,7 @@ TEST(statistics, unbiased_samplers_are_unbiased) {
                 SCOPED_TRACE(
                     fmt::format("{} on {}, {} light samples", sampler.name, name, light_samples));
                 const bool rare = sampler.table == Table::clusters && light_samples < 16;
-                const int seeds = name == "kinds" && rare ? 1500 : light_samples == 16 ? 100 : 200;
+                const int seeds = name == "kinds" && rare ? 900 : light_samples == 16 ? 70 : 120;
                 expect_unbiased(judge(
                     render_seeds(device, scene, options_for(sampler.name, light_samples), seeds),
                     reference, scene));
@@ -229,7 +229,7 @@ TEST(statistics, cuts_of_many_lights_are_unbiased) {
             for (const uint light_samples : {1u, 4u, 20u}) {
                 SCOPED_TRACE(fmt::format("{}, {} light samples", sampler, light_samples));
                 expect_unbiased(
-                    judge(render_seeds(device, scene, options_for(sampler, light_samples), 200),
+                    judge(render_seeds(device, scene, options_for(sampler, light_samples), 120),
                           reference, scene));
             }
     }
@@ -244,10 +244,10 @@ TEST(statistics, stopped_renders_are_unbiased) {
         RenderOptions options = options_for("adaptive", 0);
         options.spp = 64;
         options.target_error = 0.002;
-        expect_unbiased(judge(render_seeds(device, scene, options, 200), reference, scene));
+        expect_unbiased(judge(render_seeds(device, scene, options, 100), reference, scene));
         options.target_error = 0;
         Moments by_time;
-        for (options.seed = 0; options.seed < 200; ++options.seed) {
+        for (options.seed = 0; options.seed < 100; ++options.seed) {
             options.deadline = Clock::now() + std::chrono::milliseconds(8 + options.seed % 8);
             by_time.add(luminances(test::render(device, scene, options).image));
         }
@@ -264,7 +264,7 @@ TEST(statistics, the_papers_sampler_is_biased) {
         for (const Sampler& sampler : all_samplers()) {
             if (!sampler.biased) continue;
             const Statistics s = judge(
-                render_seeds(device, scene, options_for(sampler.name, 4), 200), reference, scene);
+                render_seeds(device, scene, options_for(sampler.name, 4), 120), reference, scene);
             EXPECT_LT(s.smallest_pixel, 1e-6) << sampler.name;
             EXPECT_LT(s.mean, 1e-6) << sampler.name;
             EXPECT_LT(s.bias, -0.001) << sampler.name;
@@ -285,7 +285,7 @@ TEST(statistics, reflections_are_unbiased) {
         SCOPED_TRACE(sampler);
         RenderOptions options = options_for(sampler, light_samples);
         options.hide_emitters = true;
-        expect_unbiased(judge(render_seeds(device, scene, options, 150), exact, scene));
+        expect_unbiased(judge(render_seeds(device, scene, options, 100), exact, scene));
     }
 }
 
@@ -313,10 +313,10 @@ TEST(statistics, reflections_are_hidden_as_lights_are) {
         RenderOptions options = options_for("exhaustive", 1);
         options.hide_emitters = true;
         options.reflections = false;
-        const Moments alone = render_seeds(device, scene, options, 200);
+        const Moments alone = render_seeds(device, scene, options, 150);
         options.sampler = "adaptive";
         options.reflections = true;
-        expect_unbiased(judge(render_seeds(device, scene, options, 150), alone, scene));
+        expect_unbiased(judge(render_seeds(device, scene, options, 120), alone, scene));
     }
 }
 
@@ -330,7 +330,7 @@ TEST(statistics, jittered_samples_are_unbiased) {
         RenderOptions defensive = options_for("contribution-defensive", 2);
         defensive.spp = 3;
         defensive.pixel_centre = false;
-        expect_unbiased(judge(render_seeds(device, scene, defensive, 200),
+        expect_unbiased(judge(render_seeds(device, scene, defensive, 120),
                               render_seeds(device, scene, exhaustive, 20), scene));
     }
 }

@@ -9,7 +9,7 @@
 
 namespace manylight {
 
-/// Every file below report/, and the plotting library as library.js, by its path; made by
+/// Every file below host/chart/report/, and the plotting library as library.js, by its path; made by
 /// cmake/embed.cmake.
 extern const std::map<std::string_view, std::string_view> report_sources;
 
