@@ -11,8 +11,7 @@
 // sum of weight x (first - second), in w the weight of all pairs; pending[] the first one until the
 // second comes (`odd`).
 #if HAS_EMISSION
-#define EMISSION_PARAMETERS \
-    , __global const Surface *surfaces, __global const Material *materials
+#define EMISSION_PARAMETERS , __global const Surface *surfaces, __global const Material *materials
 #define EMISSION_ARGUMENTS , surfaces, materials
 #else
 #define EMISSION_PARAMETERS
@@ -66,6 +65,6 @@ KERNEL void accumulate_add(Tiles tiles, IMAGE_PARAMETERS) {
 
 // Of the pixels of a pass.
 KERNEL void accumulate_add_pass(Tiles tiles, Pass pass, IMAGE_PARAMETERS) {
-    if (get_global_id(0) < pass_pixels(pass))
+    if (get_global_id(0) < 16u * pass_groups(pass))
         add_sample(tiles, pass_item(pass, get_global_id(0)), IMAGE_ARGUMENTS);
 }
