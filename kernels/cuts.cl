@@ -21,8 +21,6 @@
 #define RANDOM_PROBES 0xfffffffeu
 // What a node's children take over of its trials.
 #define INHERITED 0.5f
-// The share of rays that pass where none was traced yet, worth one ray.
-#define PRIOR_SHARE 0.7f
 
 // A cut in work: a list in tree order.
 typedef struct Cut {

@@ -21,7 +21,7 @@ KERNEL void visibility_learn(Pass pass, __global const uint* draws,
         __global const uint* first_packets = pixel_packets + 32u * group;
         for (uint draw = 0u; draw < draw_counts[group]; ++draw) {
             const uint cell_bits = draws[DRAW_ROW(pass, group, draw, DRAW_CELL) + draw % 16u];
-            const uint cell = cell_bits & 15u, number = cell_bits >> 4 & 0xffu;
+            const uint cell = cell_bits & 15u, number = cell_bits >> 4 & 0x1ffu;
             const float end = RAY_END(rays, first_packets[cell] + number / 16u, number % 16u);
             if (end == 0.0f) continue;
             const uint slot =
@@ -132,8 +132,6 @@ KERNEL void visibility_share(Tiles tiles, __global const LightNode* nodes,
 
 // Slots that are neighbours in the tree's order share what is known of them.
 #define GROUP 8u
-// What is taken for granted before any ray: a share of rays that pass, worth one ray.
-#define PRIOR_SHARE 0.7f
 // What a level of the tile's quadtree is worth to the next smaller one, rays.
 #define PARENT_RAYS 8.0f
 // V^ at least: what seems hidden is still drawn now and then.

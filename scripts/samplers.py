@@ -171,7 +171,8 @@ def scale(seeds, device):
 
 
 def overhead(scenes, seeds, device):
-    """The share of a frame with 16 light samples that is neither shading nor shadow rays of these."""
+    """The share of a frame with 16 light samples that is neither their shading nor their shadow
+    rays."""
     print("share of a frame with 16 light samples")
     print("            lights   cuts  visibility  weights     sum")
     table = {}
@@ -190,7 +191,8 @@ def overhead(scenes, seeds, device):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--table", choices=("worth", "never-worse", "overhead", "scale"), default="worth")
+    parser.add_argument("--table", choices=("worth", "never-worse", "overhead", "scale"),
+                        default="worth")
     parser.add_argument("--scenes", type=pathlib.Path)
     parser.add_argument("--only", default="")
     parser.add_argument("--seeds", type=int, default=3)

@@ -3,10 +3,11 @@
 #   worth        its error and a light tree's with the same 4 light samples, and in the time that the
 #                light tree takes for 16
 #   never-worse  the largest ratio of its error to that of the best other sampler in the same time
+#   overhead     what part of a frame with 16 light samples is neither their shading nor their rays
 #   scale        the time of a frame with 1,000 to 1,000,000 lights, and the memory of the latter
 #
-# usage: scripts/samplers.sh [--table worth|never-worse|scale] [--scenes FOLDER] [--only NAME,...]
-#                            [--seeds N] [--device D]
+# usage: scripts/samplers.sh [--table worth|never-worse|overhead|scale] [--scenes FOLDER]
+#                            [--only NAME,...] [--seeds N] [--device D]
 #   --scenes FOLDER  glTF scenes (default: the six built-in ones of many lights)
 set -euo pipefail
 cd "$(dirname "$0")/.."

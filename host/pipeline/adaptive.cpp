@@ -8,8 +8,8 @@ namespace manylight {
 namespace {
 
 constexpr unsigned wide_image = 640;  // pixels: tiles are small, one probe per node will do
-constexpr uint most_samples = 16;     // on average, of one draw of all nodes
-constexpr std::size_t many_packets = std::size_t{1} << 16;  // of one launch: what caches hold
+constexpr uint most_samples = 64;     // on average, of one draw of all nodes
+constexpr std::size_t many_packets = std::size_t{1} << 17;  // of one launch, few of them in use
 
 // Pixels with many samples are drawn several times.
 uint rounds_for(uint light_samples) { return (light_samples + most_samples - 1) / most_samples; }

@@ -110,7 +110,7 @@ void Frame::prepare() {
                            options_.most_samples());
     else
         s.samples.emplace(device_, s.scene, sampler_.kernel_file, items);
-    if (uploaded.reflections && options_.reflections) s.reflections.emplace(device_, s.scene);
+    if (uploaded.shading.at("HAS_REFLECTIONS") != 0) s.reflections.emplace(device_, s.scene);
     s.surfaces = device_.allocate<Surface>(items);
     if (plan_.centres)
         s.centres = options_.jitters() ? device_.allocate<Surface>(items) : s.surfaces;

@@ -69,7 +69,7 @@ std::vector<std::vector<DrawnNode>> AdaptiveStage::drawn(const Pass& pass) const
         for (std::size_t draw = 0; draw < counts[group]; ++draw) {
             const uint* row = &draws[64 * (16 * pass.packets * group + draw / 16) + draw % 16];
             const std::size_t cell = row[16] % 16;
-            const std::size_t number = (row[16] >> 4) % 256;
+            const std::size_t number = (row[16] >> 4) % 512;
             const std::size_t packet = packets[32 * group + cell] + number / 16;
             out[16 * group + cell].push_back({row[0] % (1 << 24), row[0] >> 24,
                                               std::bit_cast<float>(row[32]),

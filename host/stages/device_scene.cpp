@@ -59,7 +59,6 @@ DeviceScene upload_scene(Device& device, const Scene& scene, const WideBvh& bvh,
     out.shading.merge(kind_defines(features));
     out.shading["HAS_GGX"] = features.ggx;
     out.shading["HAS_REFLECTIONS"] = features.reflections;
-    out.reflections = features.reflections;
     out.emission = {{"HAS_EMISSION", features.emission}};
     return out;
 }

@@ -16,7 +16,6 @@ struct DeviceScene {
     Defines shading;      // for kernels that evaluate lights and materials, traversal included
     Defines emission;     // for kernels that add what surfaces emit
     uint light_count = 0;
-    bool reflections = false;      // stage reflections takes part
     bool packets = false;          // rays with one origin are traced 16 at a time
     bool primary_packets = false;  // ... and primary rays have one origin
 };

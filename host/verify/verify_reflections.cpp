@@ -13,7 +13,7 @@ namespace manylight {
 Check Verifier::reflections() {
     Check check{.stage = "reflections",
                 .tolerance = "64 eps (40 operations) + change under 16 eps shifts of the ray"};
-    if (!device_scene_.reflections) return check;
+    if (device_scene_.shading.at("HAS_REFLECTIONS") == 0) return check;
     const PixelSample sample{2, options_.seed, false};
     // On top of other light: what is there stays.
     const float there = 0x1p-10f;

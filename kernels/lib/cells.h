@@ -25,7 +25,7 @@ static uint pass_groups(Pass pass) { return pass.tile_count * 4u * pass.count; }
 // What the draws of a group hold, by rows of 16: draws[DRAW_ROW(...) + draw % 16]. The group's
 // packets begin at group_packets().
 #define DRAW_ENTRY 0u    // the drawn node
-#define DRAW_CELL 1u     // cell; its how manieth draw << 4; which of `times` << 12; times << 20
+#define DRAW_CELL 1u     // cell; its how manieth draw << 4; which of `times` << 13; times << 22
 #define DRAW_SHARE 2u    // float: how often the pixel draws the node on average
 #define DRAW_CONTROL 3u  // float: what of the node's estimate the control variate loses
 #define DRAW_ROW(pass, group, draw, row) \

@@ -258,7 +258,7 @@ KERNEL void adaptive_draw(Tiles tiles, Camera camera, Pass pass, Budget budget,
                 for (uint k = 0u; k < own_times; ++k, ++size) {
                     __global uint* draw = draws + DRAW_ROW(pass, group, size, 0u) + size % 16u;
                     draw[16u * DRAW_ENTRY] = entry & ~SINGLE_POINT;
-                    draw[16u * DRAW_CELL] = cell | (number + k) << 4 | k << 12 | own_times << 20;
+                    draw[16u * DRAW_CELL] = cell | (number + k) << 4 | k << 13 | own_times << 22;
                     draw[16u * DRAW_SHARE] = as_uint(LANE(share, cell));
                     draw[16u * DRAW_CONTROL] = as_uint(LANE(control, cell));
                 }

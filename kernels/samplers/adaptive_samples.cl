@@ -97,14 +97,14 @@ KERNEL void adaptive_aim(Tiles tiles, Camera camera, Pass pass, __global const S
         const uint16 bits = vload16(DRAW_CELL, rows);
         const float16 share = as_float16(vload16(DRAW_SHARE, rows));
         const float16 control = as_float16(vload16(DRAW_CONTROL, rows));
-        const uint16 cell = bits & 15u, number = bits >> 4u & 0xffu;
-        const float16 stratum = convert_float16(bits >> 12u & 0xffu);
+        const uint16 cell = bits & 15u, number = bits >> 4u & 0x1ffu;
+        const float16 stratum = convert_float16(bits >> 13u & 0x1ffu);
         const Points_16 points = permute_points(&receivers.points, cell);
         const Origins_16 from = permute_origins(&receivers.from, cell);
         uint16 random[4];
         random_bits_16(as_uint16(permute_16(pixels, cell)), pixel_sample,
                        RANDOM_DRAWS * pass.number + number, seed, random);
-        const float16 u = (stratum + unit_float_16(random[0])) / convert_float16(bits >> 20u);
+        const float16 u = (stratum + unit_float_16(random[0])) / convert_float16(bits >> 22u);
         Node_16 drawn;
         const Descent_16 d = descend_16(nodes, lights, &points, used, node, u, random[3], &drawn);
         const Color_16 estimate = node_estimate_16_16(&drawn, &points);

@@ -39,6 +39,9 @@ typedef struct Pass {
 } Pass;
 SHARED_SIZE(Pass, 24)
 
+/// What is taken for granted before any ray: a share of rays that pass, worth one ray.
+#define PRIOR_SHARE 0.7f
+
 /// How many draws the pixels of a pass get.
 typedef struct Budget {
     float samples;   // on average
