@@ -23,7 +23,7 @@ import matplotlib.pyplot as plt
 PROGRAM = "build/manylight"
 FOLDER = pathlib.Path("build/atlas")
 HEIGHT = 72
-OPTIONS = {"--light-samples": "4", "--spp": "4", "--seeds": "3", "--most-seconds": "12",
+OPTIONS = {"--light-samples": "4", "--spp": "4", "--seeds": "3", "--most-seconds": "60",
            "--reference-time": "25"}
 # Difficulties that are not the scene's.
 OTHER = (
@@ -220,9 +220,11 @@ def draw_breaks(sweeps, sampler):
 def print_table(sweeps):
     print("| Sweep | Values | What it is |\n|---|---|---|")
     for sweep in sweeps:
+        if not sweep.get("of_scene"):
+            continue
         values = ", ".join(map(text, sweep["values"]))
-        usual = f" (usually {text(sweep['usual'])})" if "usual" in sweep else ""
-        print(f"| `{sweep['scene']} {sweep['option']}` | {values}{usual} | {sweep['summary']} |")
+        print(f"| `{sweep['scene']} {sweep['option']}` | {values} (usually "
+              f"{text(sweep['usual'])}) | {sweep['summary']} |")
 
 
 def main():
