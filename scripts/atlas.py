@@ -195,7 +195,7 @@ def render(sweep, point, sampler):
 
 def draw_breaks(sweeps, sampler):
     worst = breaks_of(sweeps, sampler)
-    path = FOLDER / f"{sampler}.jpg"
+    path = FOLDER / f"atlas-{sampler}.jpg"
     path.unlink(missing_ok=True)
     shown = [w for w in worst if w[0]["name"] != "size"][:MOST_PICTURES]
     if shown:
@@ -231,6 +231,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--only", default="")
     parser.add_argument("--again", action="store_true")
+    parser.add_argument("--draw", action="store_true")
     parser.add_argument("--list", action="store_true")
     parser.add_argument("--table", action="store_true")
     arguments, extra = parser.parse_known_args()
@@ -250,18 +251,20 @@ def main():
     start = time.time()
     charted = []
     for sweep in sweeps:
-        wanted = not only or sweep["name"] in only
-        if wanted or all((FOLDER / sweep["name"] / text(v) / "chart.json").exists()
-                         for v in sweep["values"]):
-            charted.append(measure(sweep, extra, wanted and arguments.again))
+        wanted = not arguments.draw and (not only or sweep["name"] in only)
+        there = [v for v in sweep["values"]
+                 if (FOLDER / sweep["name"] / text(v) / "chart.json").exists()]
+        values = sweep["values"] if wanted else there
+        if values:
+            charted.append(measure(sweep | {"values": values}, extra, wanted and arguments.again))
     samplers = [s for s in charted[0]["points"][0]["results"] if s != "exhaustive"]
     atlas = {"options": OPTIONS | {"--height": str(HEIGHT)}, "sweeps": charted,
              "seconds": sum(p["seconds"] for s in charted for p in s["points"]),
              "breaks": {name: draw_breaks(charted, name) for name in samplers}}
     draw_heat_maps(charted, "ratio", "relMSE over the best sampler's at equal light samples",
-                   FOLDER / "equal-samples.png")
+                   FOLDER / "atlas-equal-samples.png")
     draw_heat_maps(charted, "time_ratio", "relMSE × seconds over the best sampler's",
-                   FOLDER / "equal-time.png")
+                   FOLDER / "atlas-equal-time.png")
     (FOLDER / "atlas.json").write_text(json.dumps(atlas, indent=1) + "\n")
     print(f"{time.time() - start:.0f} s ({atlas['seconds']:.0f} s of charts); wrote "
           f"{FOLDER / 'atlas.json'}")

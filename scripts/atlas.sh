@@ -4,9 +4,10 @@
 # breaks. On 2 cores it takes less than an hour. What is charted is kept: an interrupted atlas goes
 # on where it was.
 #
-# usage: scripts/atlas.sh [--only NAME,...] [--again] [--list] [--table] [OPTION...]
+# usage: scripts/atlas.sh [--only NAME,...] [--again] [--draw] [--list] [--table] [OPTION...]
 #   --only NAME,...  some of the sweeps; the heat maps show all that are charted
 #   --again          chart them again
+#   --draw           chart nothing: draw what is charted
 #   --list           list the sweeps
 #   --table          print the sweeps of the built-in scenes as a table for docs/scenes.md
 #   OPTION...        of manylight chart, for all: --device D, --seeds N, --most-seconds N, ...

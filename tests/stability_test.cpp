@@ -39,7 +39,7 @@ class Point {
     [[nodiscard]] std::vector<Image> references() const {
         if (is_exact()) return render("exhaustive", 1, 1);
         const std::size_t all = lights() * renderer_->width() * renderer_->height();
-        return render("exhaustive", std::clamp(3'000'000 / static_cast<uint>(all), 1u, 16u), 8);
+        return render("exhaustive", std::clamp(6'000'000 / static_cast<uint>(all), 1u, 64u), 8);
     }
 
     [[nodiscard]] bool is_exact() const { return renderer_->is_exact(find_sampler("exhaustive")); }
@@ -162,30 +162,36 @@ class Runs {
     std::vector<double> parts_[parts];  // [part][image] sum over its pixels
 };
 
-// The slope of log error against log pixel samples, by least squares. None where errors differ so
-// much from image to image that few images may not have met the largest.
-std::optional<Mean> slope_of(const std::vector<std::pair<double, Mean>>& errors) {
-    const auto uneven = [](const auto& e) {
-        return *e.second.standard_error > 0.2 * e.second.value;
-    };
-    if (errors.size() < 2 || std::ranges::any_of(errors, uneven)) return {};
-    double weights = 0;
-    double x_sum = 0;
-    double y_sum = 0;
-    for (const auto& [spp, error] : errors) {
-        const double w = std::pow(error.value / *error.standard_error, 2);
-        weights += w;
-        x_sum += w * std::log(spp);
-        y_sum += w * std::log(error.value);
+// The relMSE of some images with a number of pixel samples.
+struct Step {
+    uint spp, images;
+    Mean error;
+
+    // Of an image.
+    [[nodiscard]] double relative_deviation() const {
+        return *error.standard_error * std::sqrt(images) / error.value;
     }
+};
+
+// The slope of log error against log pixel samples, by least squares. Few images do not tell their
+// own deviation: the largest relative one of all steps is taken for each. None where it is so large
+// that few images may not have met the largest errors.
+std::optional<Mean> slope_of(const std::vector<Step>& steps) {
+    double deviation = 0;
+    for (const Step& s : steps) deviation = std::max(deviation, s.relative_deviation());
+    if (steps.size() < 2 || deviation > 0.5) return {};
+    double images = 0;
+    double x_mean = 0;
+    for (const Step& s : steps) images += s.images;
+    for (const Step& s : steps) x_mean += s.images * std::log(s.spp) / images;
     double xx = 0;
     double xy = 0;
-    for (const auto& [spp, error] : errors) {
-        const double w = std::pow(error.value / *error.standard_error, 2);
-        xx += w * std::pow(std::log(spp) - x_sum / weights, 2);
-        xy += w * (std::log(spp) - x_sum / weights) * (std::log(error.value) - y_sum / weights);
+    for (const Step& s : steps) {
+        const double x = std::log(s.spp) - x_mean;
+        xx += s.images * x * x;
+        xy += s.images * x * std::log(s.error.value);
     }
-    return Mean{xy / xx, 1 / std::sqrt(xx)};
+    return Mean{xy / xx, deviation / std::sqrt(xx)};
 }
 
 bool page_tells_of_negative_values(std::string_view sampler) {
@@ -219,19 +225,19 @@ struct Verdict {
 Verdict measure(const Point& point, const Sampler& sampler, const Image& truth, double own_error,
                 const Runs& expected) {
     Verdict out;
-    std::vector<std::pair<double, Mean>> errors;
+    std::vector<Step> steps;
     for (const auto& [spp, seeds] : ladder_of(point)) {
         const Runs runs(point.render(sampler.name, spp, seeds), truth, own_error);
         EXPECT_EQ(runs.bad, 0u);
         if (runs.negative > 0) {
             EXPECT_TRUE(page_tells_of_negative_values(sampler.name));
         }
-        errors.emplace_back(spp, runs.error());
+        steps.push_back({spp, seeds, runs.error()});
         if (spp != 4) continue;
         out.error = runs.error().value;
         out.probability = runs.probability(expected);
     }
-    out.slope = slope_of(errors);
+    out.slope = slope_of(steps);
     return out;
 }
 
