@@ -335,11 +335,38 @@ class CommandTest(unittest.TestCase):
             self.assertEqual((self.folder / "p.glb").read_bytes(),
                              (SCENES / f"{name}.glb").read_bytes(), name)
         self.run_program("scene", "city", "--lights", 50, "-o", "c.glb")
+        for arguments in (["cornell", "--lights", 5], ["blinds", "--slats", 2],
+                          ["blinds", "--slats", 4.5], ["near", "--distance", "nan"]):
+            self.refuse("scene", *arguments, "-o", "v.glb", words=[arguments[0], arguments[1]])
+        self.refuse("scene", "-o", "v.glb", words=["name"])
         self.refuse("scene", "village", "-o", "v.glb", words=["village", "cornell"])
         self.refuse("scene", "cornell", "-o", "c.gltf", words=["c.gltf", ".glb"])
         self.refuse("scene", "cornell", "-o", "no/c.glb", words=["no/c.glb"])
         self.refuse("scene", "dragon", "--mesh", "none.glb", "-o", "d.glb", words=["none.glb"])
         self.assertEqual(self.files(), ["c.glb", "p.glb"])
+
+    def test_scene_list(self):
+        scenes = json.loads(self.run_program("scene", "--list").stdout)
+        page = (pathlib.Path(__file__).parent.parent / "docs" / "scenes.md").read_text()
+        text = self.run_program("scene", "--help").stdout
+        for scene in scenes:
+            self.assertIn(f"| `{scene['name']}` |", page)
+            for parameter in scene["parameters"]:
+                values = ", ".join(f"{value:.6g}" for value in parameter["sweep"])
+                self.assertIn(f"| `{scene['name']} --{parameter['name']}` | {values} ", page)
+                self.assertIn(f"--{parameter['name']} ", text)
+
+    def test_shift(self):
+        view = [self.cornell, "--pixel-centre", "--sampler", "exhaustive", "--width", 24,
+                "--height", 24, "--spp", 1, "-q"]
+        self.run_program("render", *view, "-o", "a.exr")
+        for text in ("1", "1,", "1,2,3", "x,1", "1e9,0", "nan,0", ""):
+            self.refuse("render", *view, "-o", "b.exr", "--shift", text, words=["--shift"])
+        self.run_program("render", *view, "--shift", "0,0", "-o", "b.exr")
+        compare = ["compare", "a.exr", "b.exr", "--json"]
+        self.assertEqual(json.loads(self.run_program(*compare).stdout)["relmse"], 0)
+        self.run_program("render", *view, "--shift", "-3,2.5", "-o", "b.exr")
+        self.assertGreater(json.loads(self.run_program(*compare).stdout)["relmse"], 0.01)
 
     def test_verify(self):
         run = self.run_program("verify", SCENES / "pinhole.glb", "--width", 40)

@@ -36,7 +36,7 @@ LoadedScene load_room(const BenchArguments& arguments) {
             std::filesystem::remove(path, ignored);
         }
     } const file;
-    make_builtin("dragon", {.lights = 0, .mesh = arguments.mesh}).write(file.path.string());
+    make_builtin("dragon", {.mesh = arguments.mesh}).write(file.path.string());
     scene.file = file.path.string();
     scene.camera = arguments.view.empty() ? "far" : arguments.view;
     LoadedScene loaded = load(scene);

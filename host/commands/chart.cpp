@@ -40,6 +40,8 @@ std::string view_options(const ChartArguments& arguments, const LoadedScene& loa
     const SceneArguments& scene = arguments.scene;
     std::string out = quote(scene.file);
     if (!scene.camera.empty()) out += " --camera " + quote(scene.camera);
+    if (scene.shift != std::pair(0.0, 0.0))
+        out += fmt::format(" --shift {},{}", scene.shift.first, scene.shift.second);
     if (scene.emitter_points) out += fmt::format(" --emitter-points {}", *scene.emitter_points);
     if (!scene.device.empty()) out += " --device " + quote(scene.device);
     if (scene.threads > 0) out += fmt::format(" --threads {}", scene.threads);

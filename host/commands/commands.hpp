@@ -10,6 +10,7 @@
 
 #include "chart/measure.hpp"
 #include "pipeline/frame.hpp"
+#include "scene/builtin/builtin.hpp"
 
 namespace manylight {
 
@@ -20,8 +21,9 @@ struct SceneArguments {
     std::optional<unsigned> emitter_points;
     std::string device;
     unsigned threads = 0;
-    unsigned width = 0;   // 0: from the height and the camera's aspect
-    unsigned height = 0;  // 0: likewise, or 512
+    unsigned width = 0;                        // 0: from the height and the camera's aspect
+    unsigned height = 0;                       // 0: likewise, or 512
+    std::pair<double, double> shift = {0, 0};  // of the image, pixels to the right and down
 };
 
 struct RenderArguments {
@@ -57,8 +59,8 @@ struct VerifyArguments {
 struct BuiltinArguments {
     std::string name;
     std::string output;
-    unsigned lights = 0;  // 0: the scene's own number
-    std::string mesh;
+    BuiltinOptions options;
+    bool list = false;  // print all scenes, with their parameters, instead
 };
 
 struct BenchArguments {

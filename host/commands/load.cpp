@@ -39,7 +39,7 @@ LoadedScene load(const SceneArguments& arguments) {
         fmt::print(stderr, "warning: {}: the scene has no lights\n", scene.file);
     out.view = find_view(scene, arguments.camera);
     choose_size(out, arguments, out.view.aspect);
-    out.camera = make_camera(out.view, out.width, out.height);
+    out.camera = make_camera(out.view, out.width, out.height, arguments.shift);
     return out;
 }
 

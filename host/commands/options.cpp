@@ -8,7 +8,6 @@
 #include "commands/commands.hpp"
 #include "error.hpp"
 #include "pipeline/aov.hpp"
-#include "scene/builtin/builtin.hpp"
 
 namespace manylight {
 namespace {
@@ -29,6 +28,22 @@ std::size_t parse_bytes(const std::string& text) {
         throw CLI::ValidationError("--memory",
                                    text + " is no size; write, for instance, 512M or 2G");
     return static_cast<std::size_t>(number * units.at(unit));
+}
+
+// "3,-1.5": a shift by pixels.
+std::pair<double, double> parse_shift(const std::string& text) {
+    const char* end = text.c_str();
+    double values[2] = {};
+    for (double& value : values) {
+        char* next = nullptr;
+        value = std::strtod(end, &next);
+        const char separator = &value == values ? ',' : '\0';
+        if (next == end || *next != separator || !(std::abs(value) <= 65536))
+            throw CLI::ValidationError("--shift",
+                                       text + " is no shift; write, for instance, 16,-0.5");
+        end = next + 1;
+    }
+    return {values[0], values[1]};
 }
 
 // A whole number within limits; CLI11's own range prints limits of 300 digits.
@@ -84,6 +99,9 @@ void add_view(CLI::App& command, SceneArguments& scene, unsigned height = 512) {
         ->check(whole(1, 65536));
     command.add_option("--height", scene.height, fmt::format("image height (default: {})", height))
         ->check(whole(1, 65536));
+    command.add_option_function<std::string>(
+        "--shift", [&scene](const std::string& text) { scene.shift = parse_shift(text); },
+        "X,Y: show what is so many pixels farther right and down, as a shifted lens does");
 }
 
 void add_scene(CLI::App& command, SceneArguments& scene, unsigned height = 512) {
@@ -319,20 +337,34 @@ void add_bench(CLI::App& app, std::function<int()>& run) {
 void add_scene_command(CLI::App& app, std::function<int()>& run) {
     auto arguments = std::make_shared<BuiltinArguments>();
     CLI::App* command = app.add_subcommand("scene", "write a built-in scene as a .glb file");
-    command->add_option("name", arguments->name, "see below")->required();
-    command->add_option("-o,--output", arguments->output, "file to write, .glb")->required();
-    command->add_option("--lights", arguments->lights, "number of lights, for city")
-        ->check(whole(1, 1'000'000));
-    command->add_option("--mesh", arguments->mesh, "glTF file whose mesh stands in dragon's room");
+    command->add_option("name", arguments->name, "see below");
+    command->add_option("-o,--output", arguments->output, "file to write, .glb");
+    command->add_flag("--list", arguments->list,
+                      "print all scenes with their numbers as JSON, and write none");
     std::string footer = "\nScenes:\n";
     for (const Builtin& scene : all_builtins())
         footer += fmt::format("  {:<12}{}\n", scene.name, scene.summary);
+    for (const Builtin& scene : all_builtins())
+        for (const Parameter& p : scene.parameters)
+            command->add_option_function<double>(
+                fmt::format("--{}", p.name),
+                [arguments, name = std::string(p.name)](double value) {
+                    arguments->options.values[name] = value;
+                },
+                fmt::format("{}: {}, {:.6g} to {:.6g} (default: {:.6g})", scene.name, p.summary,
+                            p.least(), p.most(), p.usual));
+    command->add_option("--mesh", arguments->options.mesh,
+                        "dragon: glTF file whose mesh stands in the room");
     command->footer(footer +
                     "\nExamples:\n"
                     "  manylight scene cornell -o cornell.glb\n"
                     "  manylight scene city --lights 1000000 -o city.glb\n"
                     "  manylight scene dragon --mesh bunny.glb -o bunny-room.glb\n");
-    command->callback([&run, arguments] { run = [arguments] { return run_scene(*arguments); }; });
+    command->callback([&run, arguments] {
+        if (!arguments->list && arguments->name.empty()) throw CLI::RequiredError("name");
+        if (!arguments->list && arguments->output.empty()) throw CLI::RequiredError("--output");
+        run = [arguments] { return run_scene(*arguments); };
+    });
 }
 
 void add_chart(CLI::App& app, std::function<int()>& run) {

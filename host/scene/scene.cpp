@@ -59,16 +59,22 @@ View find_view(const Scene& scene, const std::string& name) {
                      names.empty() ? "none" : names);
 }
 
-Camera make_camera(const View& view, unsigned width, unsigned height) {
+Camera make_camera(const View& view, unsigned width, unsigned height,
+                   std::pair<double, double> shift) {
     const double aspect = static_cast<double>(width) / height;
     const auto vector = [&](const glm::dvec4& v, double w) {
         return float4(glm::vec3(glm::dvec3(v)), static_cast<float>(w));
     };
+    const glm::dvec4 right = view.to_world[0] * (view.half_height * aspect);
+    const glm::dvec4 up = view.to_world[1] * view.half_height;
+    const glm::dvec4 aside = right * (2 * shift.first / width) - up * (2 * shift.second / height);
+    const glm::dvec4 none(0);
     Camera camera;
-    camera.origin = vector(view.to_world[3], 0);
-    camera.right = vector(view.to_world[0] * (view.half_height * aspect), 0);
-    camera.up = vector(view.to_world[1] * view.half_height, 0);
-    camera.forward = vector(-view.to_world[2], view.orthographic ? 1 : 0);
+    camera.origin = vector(view.to_world[3] + (view.orthographic ? aside : none), 0);
+    camera.right = vector(right, 0);
+    camera.up = vector(up, 0);
+    camera.forward =
+        vector((view.orthographic ? none : aside) - view.to_world[2], view.orthographic ? 1 : 0);
     return camera;
 }
 

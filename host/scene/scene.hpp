@@ -7,6 +7,7 @@
 #include <glm/glm.hpp>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "shared/camera.h"
@@ -85,7 +86,9 @@ void add_emitters(Scene& scene, unsigned points);
 /// the front, above and right. Throws InputError for a name that the file does not have.
 [[nodiscard]] View find_view(const Scene& scene, const std::string& name);
 
-/// The camera for an image of that size; keeps the view's height where the aspect differs.
-[[nodiscard]] Camera make_camera(const View& view, unsigned width, unsigned height);
+/// The camera for an image of that size; keeps the view's height where the aspect differs. `shift`
+/// by pixels, to the right and down, shows what lies there, as a shifted lens does.
+[[nodiscard]] Camera make_camera(const View& view, unsigned width, unsigned height,
+                                 std::pair<double, double> shift = {0, 0});
 
 }  // namespace manylight

@@ -16,7 +16,7 @@ typedef struct Camera {
     float4 origin;   // xyz
     float4 right;    // xyz: half the image's width, at distance 1 where perspective
     float4 up;       // xyz: half the image's height, likewise
-    float4 forward;  // xyz: unit; w: 1 orthographic, 0 perspective
+    float4 forward;  // xyz: unit but for a shift, w: 1 orthographic, 0 perspective
 } Camera;
 SHARED_SIZE(Camera, 64)
 

@@ -7,7 +7,6 @@
 namespace manylight {
 namespace {
 
-constexpr int slats = 64;
 constexpr int leaves = 12'000;
 constexpr float wall = -2;     // z of the wall with the window
 constexpr float left = -1.6f;  // the window
@@ -34,9 +33,9 @@ void add_room(GltfWriter& out) {
     out.add_mesh("table", table, out.add_diffuse({0.5f, 0.4f, 0.3f}));
 }
 
-void add_slats(GltfWriter& out) {
+void add_slats(GltfWriter& out, int slats) {
     Mesh mesh;
-    const float step = (lintel - sill) / slats;
+    const float step = (lintel - sill) / static_cast<float>(slats);
     for (int i = 0; i < slats; ++i) {
         const float y = sill + (static_cast<float>(i) + 0.5f) * step;
         mesh.add_quad({left, y, wall + 0.03f}, {right - left, 0, 0},
@@ -58,10 +57,10 @@ void add_foliage(GltfWriter& out, Random& random) {
 
 }  // namespace
 
-void make_blinds(GltfWriter& out, const BuiltinOptions&) {
+void make_blinds(GltfWriter& out, const BuiltinOptions& options) {
     Random random(3);
     add_room(out);
-    add_slats(out);
+    add_slats(out, static_cast<int>(options.count("slats")));
     add_foliage(out, random);
     out.add_directional({0.35f, -0.75f, 0.8f}, glm::vec3(1, 0.9f, 0.75f) * 9.f);
     for (int i = 0; i < 63; ++i)  // street lamps

@@ -27,7 +27,7 @@ void add_lamp(Mesh& mesh, glm::vec3 position, glm::vec3 normal, float lamp) {
 }  // namespace
 
 void make_city(GltfWriter& out, const BuiltinOptions& options) {
-    const unsigned lights = options.lights > 0 ? options.lights : 100'000;
+    const unsigned lights = options.count("lights");
     constexpr float side = blocks * pitch;
     Random random(7);
     Mesh ground;

@@ -4,7 +4,7 @@
 
 namespace manylight {
 
-void make_glossy(GltfWriter& out, const BuiltinOptions&) {
+void make_glossy(GltfWriter& out, const BuiltinOptions& options) {
     Random random(11);
     Mesh floor;
     floor.add_quad({-6, 0, 6}, {12, 0, 0}, {0, 0, -12});
@@ -25,7 +25,8 @@ void make_glossy(GltfWriter& out, const BuiltinOptions&) {
         const glm::vec3 at = random.in({-5.5f, 1.9f, -5.5f}, {5.5f, 3.2f, 5.5f});
         out.add_point(at, hue_color(random.in(0, 1), 0.95f) * random.in(0.05f, 0.4f));
     }
-    out.add_mesh("floor", floor, out.add_material({0.5f, 0.5f, 0.52f}, 1, 0.25f));
+    out.add_mesh("floor", floor,
+                 out.add_material({0.5f, 0.5f, 0.52f}, 1, options.number("roughness")));
     out.add_mesh("walls", walls, out.add_diffuse({0.5f, 0.5f, 0.5f}));
     out.add_mesh("boxes", boxes, out.add_diffuse({0.6f, 0.5f, 0.4f}));
     out.add_mesh("columns", columns, out.add_material({0.6f, 0.6f, 0.65f}, 1, 0.3f));

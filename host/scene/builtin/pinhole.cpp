@@ -4,8 +4,8 @@
 
 namespace manylight {
 
-void make_pinhole(GltfWriter& out, const BuiltinOptions&) {
-    constexpr float hole = 0.04f;  // side, m
+void make_pinhole(GltfWriter& out, const BuiltinOptions& options) {
+    const float hole = options.number("hole");  // side, m
     constexpr float hole_y = 1.2f;
     Random random(5);
     Mesh room;  // two rooms: the dim one at z > 0, the lamp's at z < 0
@@ -27,7 +27,8 @@ void make_pinhole(GltfWriter& out, const BuiltinOptions&) {
     out.add_mesh("room", room, out.add_diffuse({0.7f, 0.7f, 0.7f}));
     out.add_mesh("wall", wall, out.add_diffuse({0.6f, 0.55f, 0.5f}));
     out.add_mesh("boxes", boxes, out.add_diffuse({0.5f, 0.5f, 0.6f}));
-    out.add_point({0.25f, 1.6f, -0.8f}, glm::vec3(1, 0.95f, 0.85f) * 3000.f);
+    // Its beam falls on the floor between the boxes.
+    out.add_point({-0.18f, 1.92f, -0.72f}, glm::vec3(1, 0.95f, 0.85f) * options.number("lamp"));
     for (int i = 0; i < 31; ++i)
         out.add_point(random.in({-1.8f, 1.9f, 0.3f}, {1.8f, 2.4f, 3.6f}),
                       hue_color(random.in(0, 1), 0.3f) * random.in(0.05f, 0.3f));
