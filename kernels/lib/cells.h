@@ -22,6 +22,10 @@ static uint pass_groups(Pass pass) { return pass.tile_count * 4u * pass.count; }
 #define DRAWN_SLOT(entry) ((entry) >> 24)
 #define DRAWN_NODE(entry) ((entry)&0x7fffffu)
 
+// Where a ray would end that there is none of, since what is drawn does not shine there: it says of
+// the node what an occluded ray says.
+#define DARK -2.0f
+
 // What the draws of a group hold, by rows of 16: draws[DRAW_ROW(...) + draw % 16]. The group's
 // packets begin at group_packets().
 #define DRAW_ENTRY 0u    // the drawn node

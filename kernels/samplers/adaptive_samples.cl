@@ -123,9 +123,12 @@ KERNEL void adaptive_aim(Tiles tiles, Camera camera, Pass pass, __global const S
             SET_LANE(drawn_red, own, LANE(drawn_red, own) + lost * LANE(estimate.red, lane));
             SET_LANE(drawn_green, own, LANE(drawn_green, own) + lost * LANE(estimate.green, lane));
             SET_LANE(drawn_blue, own, LANE(drawn_blue, own) + lost * LANE(estimate.blue, lane));
-            if (!(lit >> lane & 1u)) continue;
             const uint at = UINT_LANE(place, lane);
             __global float* row = rays + 64 * (ulong)(at / 16u) + at % 16u;
+            if (!(lit >> lane & 1u)) {
+                row[48] = DARK;
+                continue;
+            }
             row[0] = LANE(direct.x, lane);
             row[16] = LANE(direct.y, lane);
             row[32] = LANE(direct.z, lane);
@@ -167,7 +170,7 @@ KERNEL void adaptive_add(Pass pass, __global const uint* pixel_packets, __global
         const float16 ends = vload16(3, rays + 64 * (ulong)packet);
         __global const float* own = values + 48 * (ulong)packet;
         const int16 visible = ends > 0.0f;
-        count += popcount(lanes_16(ends != 0.0f));
+        count += popcount(lanes_16((ends != 0.0f) & (ends != DARK)));
         sum += (float3)(sum_where(own, visible), sum_where(own + 16, visible),
                         sum_where(own + 32, visible));
     }
