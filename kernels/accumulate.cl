@@ -11,8 +11,7 @@
 // sum of weight x (first - second), in w the weight of all pairs; pending[] the first one until the
 // second comes (`odd`).
 #if HAS_EMISSION
-#define EMISSION_PARAMETERS \
-    , __global const Surface *surfaces, __global const Material *materials
+#define EMISSION_PARAMETERS , __global const Surface *surfaces, __global const Material *materials
 #define EMISSION_ARGUMENTS , surfaces, materials
 #else
 #define EMISSION_PARAMETERS
@@ -39,7 +38,7 @@ static void add_sample(Tiles tiles, uint item, IMAGE_PARAMETERS) {
 #if HAS_EMISSION
     __global const Surface* surface = surfaces + item;
     if (surface->position.w >= 0.0f) {
-        const float4 emission = materials[surface->material].emission;
+        const float4 emission = materials[surface->shading].emission;
         if (surface->front || emission.w != 0.0f) term.xyz += emission.xyz;
     }
 #endif

@@ -49,7 +49,7 @@ void AdaptiveStage::draw(const Tiles& tiles, const Pass& pass, const Budget& bud
         .set("estimates", estimates.sums);
     draw_.launch(pass_pixels(pass) / 16, arguments);
     if (cuts.groups || reflections_) aim_.launch(pass_pixels(pass), arguments);
-    shadows_.trace(pass_pixels(pass) * pass.packets);
+    shadows_.trace(pass_pixels(pass) * pass.packets, sample.salt());
     add_.launch(pass_pixels(pass), arguments);
 }
 

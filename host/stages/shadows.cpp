@@ -16,9 +16,11 @@ Arguments ShadowStage::buffers() const {
     return Arguments().set("origins", origins_).set("rays", rays_);
 }
 
-void ShadowStage::trace(std::size_t count) {
-    trace_.launch(16 * count / rays_per_item_,
-                  Arguments(scene_).set(buffers()).set("packet_count", static_cast<uint>(count)));
+void ShadowStage::trace(std::size_t count, uint salt) {
+    trace_.launch(16 * count / rays_per_item_, Arguments(scene_)
+                                                   .set(buffers())
+                                                   .set("alpha_salt", salt)
+                                                   .set("packet_count", static_cast<uint>(count)));
 }
 
 }  // namespace manylight

@@ -18,8 +18,8 @@ class ShadowStage {
     /// The rays themselves.
     [[nodiscard]] const Buffer<float>& rays() const { return rays_; }
 
-    /// Ends the rays of packets 0 to `count` that are occluded at -1.
-    void trace(std::size_t count);
+    /// Ends the rays of packets 0 to `count` that are occluded at -1. `salt` as PixelSample's.
+    void trace(std::size_t count, uint salt = 0);
 
     /// Bytes of a packet on the device.
     [[nodiscard]] static constexpr std::size_t packet_bytes() {

@@ -59,6 +59,11 @@ static void set_point(Points_16* all, uint lane, Points_1 one) {
     SET_POINT(metallic);
     SET_POINT(alpha);
     SET_POINT(specular);
+#if HAS_REFLECTANCE
+    SET_POINT(f0_red);
+    SET_POINT(f0_green);
+    SET_POINT(f0_blue);
+#endif
     all->glossy = all->glossy || one.glossy;
 #endif
 }
@@ -287,6 +292,7 @@ KERNEL void adaptive_draw(Tiles tiles, Camera camera, Pass pass, Budget budget,
             receiver.material.base_color = (float4)(0.0f);
             receiver.material.roughness = 1.0f;
             receiver.material.specular = 0.0f;
+            receiver.material.reflectance = (float4)(0.0f);
         }
         reflecting = reflecting || receiver.reflects;
         set_point(&points, cell, point_of(&receiver));
