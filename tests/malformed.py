@@ -292,7 +292,7 @@ CHANGES = {
     "corners no triangles": (put(INDEX + ["count"], 5), ["5 corners"]),
     "index beyond the vertices": (patched(48 + 4, struct.pack("<H", 4)), ["element 2", "4"]),
     "normals too few": (lambda d: (d["accessors"].append(dict(d["accessors"][0], count=3)),
-                                   d["meshes"][0]["primitives"][0]["attributes"].update(NORMAL=2)),
+                                   d["meshes"][0]["primitives"][0]["attributes"].update(NORMAL=3)),
                         ["NORMAL", "3 normals for 4"]),
     "position not a number": (patched(4, NAN), ["POSITION", "element 0"]),
     "position infinite": (patched(24, INF), ["POSITION", "element 2"]),

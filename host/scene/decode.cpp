@@ -4,8 +4,12 @@
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 
+#include <fcntl.h>
+#include <unistd.h>
+
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <cstring>
 #include <string_view>
 
@@ -24,6 +28,27 @@ std::string name_for(std::span<const unsigned char> bytes) {
     if (head.starts_with("\x76\x2f\x31\x01")) return "texture.exr";
     return {};
 }
+
+// libpng tells its errors to standard error itself, beside those that it returns.
+class NoStandardError {
+  public:
+    NoStandardError() : before_(dup(STDERR_FILENO)) {
+        const int nowhere = open("/dev/null", O_WRONLY | O_CLOEXEC);
+        std::fflush(stderr);
+        if (before_ >= 0 && nowhere >= 0) dup2(nowhere, STDERR_FILENO);
+        if (nowhere >= 0) close(nowhere);
+    }
+    ~NoStandardError() {
+        if (before_ < 0) return;
+        dup2(before_, STDERR_FILENO);
+        close(before_);
+    }
+    NoStandardError(const NoStandardError&) = delete;
+    NoStandardError& operator=(const NoStandardError&) = delete;
+
+  private:
+    int before_;
+};
 
 std::string one_line(std::string text) {
     std::ranges::replace(text, '\n', ' ');
@@ -90,6 +115,7 @@ DecodedImage decode_image(std::span<const unsigned char> bytes, const std::strin
                          bytes.size());
     OIIO::Filesystem::IOMemReader reader(bytes.data(), bytes.size());
     OIIO::Filesystem::IOProxy* proxy = &reader;
+    const NoStandardError quiet;
     OIIO::ImageSpec config;
     config["oiio:UnassociatedAlpha"] = 1;
     config.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
