@@ -2,13 +2,16 @@
 // Stage cuts: for each tile a cut through the light trees, fine where much light may come from, and
 // a first look at what is visible.
 #include "lib/direct.h"
+#include "lib/inverse.h"
 #include "lib/random.h"
 #include "lib/tiles.h"
 #include "shared/adaptive.h"
 #include "shared/light_tree.h"
 
 #define LANES 1
+#define NODES 1
 #include "lib/node_estimate.h"
+#undef NODES
 #undef LANES
 #include "lib/points.h"
 
@@ -134,18 +137,19 @@ KERNEL void cuts_make(Tiles tiles, Camera camera, __global const Surface* surfac
         const uint added = cut.size++;
         cut.next[added] = cut.next[worst];
         cut.next[worst] = added;
-        for (uint child = 0u; child < 2u; ++child) {
-            const uint place = child == 0u ? worst : added;
-            const uint at = child == 0u ? node + 1u : node + 2u * nodes[node + 1u].count;
+        for (uint side = 0u; side < 2u; ++side) {
+            const uint place = side == 0u ? worst : added;
+            const uint at = side == 0u ? node + 1u : node + 2u * nodes[node + 1u].count;
             Trials trials = probe(BVH_ARGUMENTS, nodes, lights, receivers, receiver_count, at,
                                   probe_rays, step_bits(tile_bits, at));
             trials.traced += INHERITED * parent.traced;
             trials.passed += INHERITED * parent.passed;
             float score = 0.0f;
             if (nodes[at].count > 1u) {
+                const Node_1 child = load_node(nodes + at, lights);
                 for (uint i = 0u; i < receiver_count; ++i) {
                     const Points_1 point = point_of(receivers + i);
-                    score += color_luminance_1(node_estimate_1(nodes + at, lights, &point));
+                    score += color_luminance_1(node_estimate_1(&child, &point));
                 }
                 score *= visible_root(trials);
             }

@@ -3,11 +3,21 @@
 #include "lib/packet.h"
 #include "lib/rays.h"
 
+// Where packets come in regions, only the first packet_counts[region] of each are in use.
+#if HAS_REGIONS
+#define REGIONS __global const uint *packet_counts, uint region,
+#define IS_UNUSED(packet) ((packet) % region >= packet_counts[(packet) / region])
+#else
+#define REGIONS
+#define IS_UNUSED(packet) ((packet) >= packet_count)
+#endif
+
 // One packet per work-item.
 KERNEL void shadows_trace_packets(BVH_PARAMETERS, __global const float4* origins,
-                                  __global float16* rays, uint packet_count) {
+                                  __global float16* rays, REGIONS uint packet_count) {
     const uint i = get_global_id(0);
     if (i >= packet_count) return;
+    if (IS_UNUSED(i)) return;
     __global float16* rows = rays + 4 * (ulong)i;
     if (!lanes_16(rows[3] > 0.0f)) return;
     Packet packet = make_packet(origins[i].xyz, rows[0], rows[1], rows[2], rows[3]);
@@ -16,9 +26,10 @@ KERNEL void shadows_trace_packets(BVH_PARAMETERS, __global const float4* origins
 
 // The same, one ray per work-item.
 KERNEL void shadows_trace_rays(BVH_PARAMETERS, __global const float4* origins, __global float* rays,
-                               uint packet_count) {
+                               REGIONS uint packet_count) {
     const uint i = get_global_id(0);
     if (i / 16u >= packet_count) return;
+    if (IS_UNUSED(i / 16u)) return;
     __global float* row = rays + 64 * (ulong)(i / 16u) + i % 16u;
     const Ray ray = {origins[i / 16u].xyz, (float3)(row[0], row[16], row[32]), row[48]};
     if (ray.end > 0.0f && occluded(BVH_ARGUMENTS, ray)) row[48] = -1.0f;

@@ -2,6 +2,7 @@
 // Stage visibility: what shadow rays have said about the nodes of a tile's cut, cell by cell, and
 // the estimate V^ of the share of a node's light that a cell sees.
 #include "lib/cells.h"
+#include "lib/inverse.h"
 #include "lib/rays.h"
 #include "shared/light_tree.h"
 
@@ -9,22 +10,25 @@
 // before it overflows.
 #define MOST_TRIALS 60000u
 
-// Adds the rays of a pass to the counts of its cells. One cell per work-item.
-KERNEL void visibility_learn(Pass pass, __global const uint* drawn, __global const float* rays,
-                             __global uint* counts) {
-    if (get_global_id(0) >= pass.tile_count * CELLS_PER_TILE) return;
-    const uint cell = CELLS_PER_TILE * pass.first_tile + (uint)get_global_id(0);
-    __global uint* own = counts + quadrant_slots(cell / 16u) + cell % 16u;
-    for (uint i = 0u; i < pass.count; ++i) {
-        const uint first = first_draw(pass, (uint)get_global_id(0) * pass.count + i);
-        for (uint j = 0u; j < 16u * pass.packets; ++j) {
-            const uint entry = drawn[first + j];
-            if (entry == NO_DRAW) break;
-            const float end = RAY_END(rays, (first + j) / 16u, j % 16u);
+// Adds the rays of a pass to the counts of its cells. One quadrant per work-item.
+KERNEL void visibility_learn(Pass pass, __global const uint* draws,
+                             __global const uint* draw_counts, __global const uint* pixel_packets,
+                             __global const float* rays, __global uint* counts) {
+    const uint quadrant = get_global_id(0);
+    if (quadrant >= 4u * pass.tile_count) return;
+    __global uint* own = counts + quadrant_slots(4u * pass.first_tile + quadrant);
+    for (uint group = quadrant * pass.count; group < (quadrant + 1u) * pass.count; ++group) {
+        __global const uint* first_packets = pixel_packets + 32u * group;
+        for (uint draw = 0u; draw < draw_counts[group]; ++draw) {
+            const uint cell_bits = draws[DRAW_ROW(pass, group, draw, DRAW_CELL) + draw % 16u];
+            const uint cell = cell_bits & 15u, number = cell_bits >> 4 & 0xffu;
+            const float end = RAY_END(rays, first_packets[cell] + number / 16u, number % 16u);
             if (end == 0.0f) continue;
-            const uint slot = DRAWN_SLOT(entry);
-            const uint old = own[16u * slot];
-            if ((old & 0xffffu) < MOST_TRIALS) own[16u * slot] = old + (end > 0.0f ? 65537u : 1u);
+            const uint slot =
+                DRAWN_SLOT(draws[DRAW_ROW(pass, group, draw, DRAW_ENTRY) + draw % 16u]);
+            const uint old = own[16u * slot + cell];
+            if ((old & 0xffffu) < MOST_TRIALS)
+                own[16u * slot + cell] = old + (end > 0.0f ? 65537u : 1u);
         }
     }
 }
@@ -145,7 +149,7 @@ static void add_trials(Trials* sum, Trials term) {
 }
 
 static float16 shrink_16(float16 traced, float16 passed, float16 towards) {
-    return (passed + PARENT_RAYS * towards) / (traced + PARENT_RAYS);
+    return (passed + PARENT_RAYS * towards) * inverse_16(traced + PARENT_RAYS);
 }
 
 // The rays of a part of a tile to all slots, and how many of them were expected to pass.
@@ -163,14 +167,23 @@ static void add_outcome(Outcome* sum, float16 traced, float16 passed, float16 sh
 // that passed and one that did not.
 #define SIGHT_RAYS 1.0f
 
-// A slot's share with the odds changed by what the part of the tile sees more or less of all slots
-// than was expected: lights are often hidden together.
-static float16 adjust(const Outcome* seen, float16 share) {
-    const float16 passed = (seen->passed + SIGHT_RAYS) / (seen->expected + SIGHT_RAYS);
-    const float16 stopped =
+// How the odds of all slots change by what the part of the tile sees more or less of them than was
+// expected: lights are often hidden together.
+typedef struct Odds {
+    float16 passed, stopped;
+} Odds;
+
+static Odds odds_of(const Outcome* seen) {
+    Odds odds;
+    odds.passed = (seen->passed + SIGHT_RAYS) / (seen->expected + SIGHT_RAYS);
+    odds.stopped =
         (seen->traced - seen->passed + SIGHT_RAYS) / (seen->traced - seen->expected + SIGHT_RAYS);
-    const float16 yes = share * passed;
-    return yes / fma(1.0f - share, stopped, yes);
+    return odds;
+}
+
+static float16 adjust(Odds odds, float16 share) {
+    const float16 yes = share * odds.passed;
+    return yes * inverse_16(fma(1.0f - share, odds.stopped, yes));
 }
 
 // visible[...] = V^ of every cell: from the tile's mean to the mean of GROUP slots, the slot, and
@@ -204,24 +217,27 @@ KERNEL void visibility_estimate(Tiles tiles, __global const uint* cut_sizes,
                     share);
         own_visible[slot] = share;
     }
+    Odds odds = odds_of(&of_16);
     for (uint slot = 0u; slot < size; ++slot) {
         const CellTrials t = load_trials(own_counts[slot]);
         const float16 traced = sum_quarters(t.traced), passed = sum_quarters(t.passed);
         const float16 share =
-            shrink_16(sum_all(traced), sum_all(passed), adjust(&of_16, own_visible[slot]));
+            shrink_16(sum_all(traced), sum_all(passed), adjust(odds, own_visible[slot]));
         add_outcome(&of_8, traced, passed, share);
         own_visible[slot] = share;
     }
+    odds = odds_of(&of_8);
     for (uint slot = 0u; slot < size; ++slot) {
         const CellTrials t = load_trials(own_counts[slot]);
         const float16 share = shrink_16(sum_quarters(t.traced), sum_quarters(t.passed),
-                                        adjust(&of_8, own_visible[slot]));
+                                        adjust(odds, own_visible[slot]));
         add_outcome(&of_4, t.traced, t.passed, share);
         own_visible[slot] = share;
     }
+    odds = odds_of(&of_4);
     for (uint slot = 0u; slot < size; ++slot) {
         const CellTrials t = load_trials(own_counts[slot]);
-        const float16 share = shrink_16(t.traced, t.passed, adjust(&of_4, own_visible[slot]));
+        const float16 share = shrink_16(t.traced, t.passed, adjust(odds, own_visible[slot]));
         own_visible[slot] = max(share, LEAST_VISIBILITY);
     }
 }

@@ -170,9 +170,27 @@ def scale(seeds, device):
     return table
 
 
+def overhead(scenes, seeds, device):
+    """The share of a frame with 16 light samples that is neither shading nor shadow rays of these."""
+    print("share of a frame with 16 light samples")
+    print("            lights   cuts  visibility  weights     sum")
+    table = {}
+    for scene in scenes:
+        runs = [render(scene, "adaptive", 16, 1, seed, "image", device)[1]
+                for seed in range(seeds + 1)][1:]  # the first one compiles
+        row = {stage: statistics.median(r["stage_seconds"][stage] / r["seconds"]["render"]
+                                        for r in runs)
+               for stage in ("cuts", "visibility", "weights")}
+        row["sum"] = sum(row.values())
+        table[scene.stem] = row | {"lights": runs[0]["lights"]}
+        print(f"{scene.stem:10} {runs[0]['lights']:7} {row['cuts']:6.1%} {row['visibility']:10.1%} "
+              f"{row['weights']:8.1%} {row['sum']:8.1%}", flush=True)
+    return table
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--table", choices=("worth", "never-worse", "scale"), default="worth")
+    parser.add_argument("--table", choices=("worth", "never-worse", "overhead", "scale"), default="worth")
     parser.add_argument("--scenes", type=pathlib.Path)
     parser.add_argument("--only", default="")
     parser.add_argument("--seeds", type=int, default=3)
@@ -191,6 +209,8 @@ def main():
         scenes = [s for s in scenes if s.stem in arguments.only.split(",")]
     if arguments.table == "never-worse":
         table = never_worse(scenes, arguments.seeds, device)
+    elif arguments.table == "overhead":
+        table = overhead(scenes, arguments.seeds, device)
     elif arguments.table == "scale":
         table = scale(arguments.seeds, device)
     else:

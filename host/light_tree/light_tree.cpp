@@ -62,6 +62,9 @@ Extent extent_of(const Light& light) {
     return {{p, p + u, p + v, p}, p + (u + v) / 3.f, area / 2, (squares - glm::dot(u, v)) / 18};
 }
 
+// The share of a light of two sides that counts as without axis.
+constexpr float two_sides = 0.5f;
+
 // A node of one light.
 LightNode leaf_of(const Light& light, uint index) {
     const auto kind = static_cast<LightKind>(light.position.w);
@@ -94,7 +97,8 @@ LightNode leaf_of(const Light& light, uint index) {
     const glm::vec3 axis = axis_of(light);
     const bool two_sided = has_area(light) && light.axis.w != 0;
     node.centre = float4(centre, mean_square);
-    node.axis = float4(axis, has_axis(light) ? 0 : two_sided ? 0.5f : 1);
+    node.axis = two_sided ? float4(glm::normalize(area_normal(light)), two_sides)
+                          : float4(axis, has_axis(light) ? 0 : 1);
     node.intensity = float4(intensity, radius);
     float emitting = -1;  // cosine of the largest angle off the axis
     if (kind == LIGHT_SPOT) emitting = std::clamp(-light.edge.y / light.edge.x, 0.f, 1.f);
@@ -125,6 +129,12 @@ float4 join_cones(const float4& a, const float4& b) {
     return {axis, std::max(std::cos(angle) - 1e-5f, -1.f)};
 }
 
+// The mean emission axis of the node's lights, and in w the share of those without one.
+float4 mean_axis(const LightNode& node) {
+    const bool two_sided = node.kind != NODE_GROUP && node.axis.w == two_sides;
+    return two_sided ? float4(0, 0, 0, two_sides) : node.axis;
+}
+
 float phi(const LightNode& node) { return luminance(glm::vec3(node.intensity)); }
 
 LightNode join(const LightNode& a, const LightNode& b) {
@@ -141,7 +151,7 @@ LightNode join(const LightNode& a, const LightNode& b) {
     const glm::vec3 apart = cb - ca;
     node.centre = float4(ca + wb * apart,
                          wa * a.centre.w + wb * b.centre.w + wa * wb * glm::dot(apart, apart));
-    node.axis = wa * a.axis + wb * b.axis;
+    node.axis = wa * mean_axis(a) + wb * mean_axis(b);
     const glm::vec3 lower = glm::min(glm::vec3(a.lower), glm::vec3(b.lower));
     const glm::vec3 upper = glm::max(glm::vec3(a.upper), glm::vec3(b.upper));
     const glm::vec3 c(node.centre);

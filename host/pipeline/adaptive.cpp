@@ -39,8 +39,10 @@ void Adaptive::start(const Tiles& tiles, const Buffer<Surface>& surfaces, uint s
     const CutOptions options{CUT_CAPACITY, width_ >= wide_image ? 1u : 4u, seed};
     visibility_.counts.clear();
     cut_stage_.make(tiles, surfaces, options, cuts_);
-    visibility_stage_.estimate(tiles, cuts_, visibility_);
+    tiles_ = tiles;
     fresh_ = true;
+    is_estimated_ = false;
+    drawn_pixels_ = 0;
     factor_ = 0;
 }
 
@@ -60,7 +62,8 @@ void Adaptive::draw(const Tiles& tiles, const PixelSample& sample, uint light_sa
     fresh_ = false;
 }
 
-TileKnowledge Adaptive::knowledge(uint tile) const {
+TileKnowledge Adaptive::knowledge(uint tile) {
+    estimate();
     const float samples = samples_of_round(light_samples_);
     TileKnowledge out{{}, {}, {samples, factor_ * samples, exposure_}, rounds_for(light_samples_)};
     const std::size_t begin = std::size_t{tile} * CUT_CAPACITY;
@@ -77,6 +80,7 @@ TileKnowledge Adaptive::knowledge(uint tile) const {
 bool Adaptive::pass_over(const Tiles& tiles, Pass pass, const PixelSample& sample,
                          uint light_samples, const Buffer<Surface>& surfaces, Estimates& estimates,
                          const std::function<bool(const Pass&)>& done) {
+    estimate();
     light_samples_ = light_samples;
     const uint rounds = rounds_for(light_samples);
     const float samples = samples_of_round(light_samples);
@@ -96,10 +100,17 @@ bool Adaptive::pass_over(const Tiles& tiles, Pass pass, const PixelSample& sampl
         }
         if (!done(pass)) return false;
     }
-    visibility_stage_.estimate(tiles, cuts_, visibility_);
-    set_budget(
-        adaptive_stage_.expectations(std::size_t{tiles.count} * CELLS_PER_TILE * pass.count));
+    is_estimated_ = false;
+    drawn_pixels_ = std::size_t{tiles.count} * CELLS_PER_TILE * pass.count;
     return true;
+}
+
+// Brings what is known up to the last pass.
+void Adaptive::estimate() {
+    if (is_estimated_) return;
+    visibility_stage_.estimate(tiles_, cuts_, visibility_);
+    if (drawn_pixels_ > 0) set_budget(adaptive_stage_.expectations(drawn_pixels_));
+    is_estimated_ = true;
 }
 
 // Packets of a launch at most: one tile's pass at least.

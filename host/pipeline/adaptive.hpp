@@ -33,7 +33,7 @@ class Adaptive {
               const std::function<bool(const Pass&)>& done);
 
     /// What is known of a tile of the batch, after draw().
-    [[nodiscard]] TileKnowledge knowledge(uint tile) const;
+    [[nodiscard]] TileKnowledge knowledge(uint tile);
 
     /// Bytes on the device for each tile, and besides.
     [[nodiscard]] static constexpr std::size_t tile_bytes() {
@@ -49,6 +49,7 @@ class Adaptive {
                    const Buffer<Surface>& surfaces, Estimates& estimates,
                    const std::function<bool(const Pass&)>& done);
     static std::size_t packets_for(std::size_t tiles, uint light_samples);
+    void estimate();
     void set_budget(const std::vector<Expectation>& pixels);
 
     static constexpr uint most_places = 8;  // of a cell in one pass
@@ -61,8 +62,11 @@ class Adaptive {
     uint light_count_;
     unsigned width_;
     uint light_samples_ = 1;  // of the last draw
+    Tiles tiles_{};           // of the batch
     bool fresh_ = true;       // nothing was learned yet
-    float factor_ = 0;        // see Budget; for one draw on average
+    bool is_estimated_ = false;
+    std::size_t drawn_pixels_ = 0;  // of the last pass
+    float factor_ = 0;              // see Budget; for one draw on average
     float exposure_ = 0;
 };
 

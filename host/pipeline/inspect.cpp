@@ -13,7 +13,6 @@
 namespace manylight {
 namespace {
 
-constexpr double control = 0.8;  // as in kernels/samplers/adaptive.cl
 constexpr std::size_t most_points = 256;
 constexpr std::size_t most_rays = std::size_t{1} << 18;
 
@@ -207,7 +206,7 @@ PixelReport inspect_pixel(const Scene& plain, const LightTree& tree, const Camer
         truth.add_node(choice.node, 1, sum);
         const double visible = group.pixels[group.own].visible[choice.slot];
         const double contribution = reference::luminance(sum.value);
-        const double expected = control * visible * choice.estimate;
+        const double expected = CONTROL * visible * choice.estimate;
         shares.push_back(choice.share);
         values.push_back(choice.share > 0 ? (contribution - expected) / choice.share : 0);
         within.push_back(choice.share > 0

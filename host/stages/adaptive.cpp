@@ -1,30 +1,35 @@
 // SPDX-License-Identifier: MIT
 #include "stages/adaptive.hpp"
 
+#include <bit>
+
 namespace manylight {
 
 AdaptiveStage::AdaptiveStage(Device& device, const DeviceScene& scene, std::size_t packets,
                              std::size_t pixels)
     : scene_(scene.arguments),
-      reflections_(scene.shading.at("HAS_REFLECTIONS") != 0),
-      shadows_(device, scene, packets),
-      drawn_(device.allocate<uint>(16 * packets)),
-      shares_(device.allocate<float>(16 * packets)),
-      base_(device.allocate<float4>(packets)),
+      shadows_(device, scene, packets, true),
+      draws_(device.allocate<uint>(64 * packets)),
+      draw_counts_(device.allocate<uint>((packets + 15) / 16)),
+      pixel_packets_(device.allocate<uint>(2 * packets)),
+      packet_counts_(device.allocate<uint>((packets + 15) / 16)),
+      base_(device.allocate<float>(3 * packets)),
       values_(device.allocate<float>(48 * packets)),
       expectations_(device.allocate<Expectation>(pixels)) {
-    const auto kernel = [&](const char* name, const char* stage) {
-        return device.kernel("samplers/adaptive.cl", name, scene.shading, stage);
+    draw_ = device.kernel("samplers/adaptive.cl", "adaptive_draw", scene.shading, "weights");
+    const auto kernel = [&](const char* name) {
+        return device.kernel("samplers/adaptive_samples.cl", name, scene.shading, "samples");
     };
-    draw_ = kernel("adaptive_draw", "weights");
-    aim_ = kernel("adaptive_aim", "samples");
-    add_ = kernel("adaptive_add", "samples");
+    aim_ = kernel("adaptive_aim");
+    add_ = kernel("adaptive_add");
 }
 
 Arguments AdaptiveStage::draws() const {
     return shadows_.buffers()
-        .set("drawn", drawn_)
-        .set("shares", shares_)
+        .set("draws", draws_)
+        .set("draw_counts", draw_counts_)
+        .set("pixel_packets", pixel_packets_)
+        .set("packet_counts", packet_counts_)
         .set("base", base_)
         .set("values", values_);
 }
@@ -47,10 +52,31 @@ void AdaptiveStage::draw(const Tiles& tiles, const Pass& pass, const Budget& bud
         .set("weight", weight)
         .set("start", uint{start})
         .set("estimates", estimates.sums);
-    draw_.launch(pass_pixels(pass) / 16, arguments);
-    if (cuts.groups || reflections_) aim_.launch(pass_pixels(pass), arguments);
-    shadows_.trace(pass_pixels(pass) * pass.packets, sample.salt());
+    const std::size_t groups = pass_pixels(pass) / 16;
+    draw_.launch(groups, arguments);
+    aim_.launch(groups, arguments);
+    shadows_.trace(pass_pixels(pass) * pass.packets, 16 * pass.packets, packet_counts_,
+                   sample.salt());
     add_.launch(pass_pixels(pass), arguments);
+}
+
+std::vector<std::vector<DrawnNode>> AdaptiveStage::drawn(const Pass& pass) const {
+    const std::vector<uint> draws = draws_.download();
+    const std::vector<uint> counts = draw_counts_.download();
+    const std::vector<uint> packets = pixel_packets_.download();
+    const std::vector<float> rays = shadows_.rays().download();
+    std::vector<std::vector<DrawnNode>> out(pass_pixels(pass));
+    for (std::size_t group = 0; group < out.size() / 16; ++group)
+        for (std::size_t draw = 0; draw < counts[group]; ++draw) {
+            const uint* row = &draws[64 * (16 * pass.packets * group + draw / 16) + draw % 16];
+            const std::size_t cell = row[16] % 16;
+            const std::size_t number = (row[16] >> 4) % 256;
+            const std::size_t packet = packets[32 * group + cell] + number / 16;
+            out[16 * group + cell].push_back({row[0] % (1 << 24), row[0] >> 24,
+                                              std::bit_cast<float>(row[32]),
+                                              rays[64 * packet + 48 + number % 16]});
+        }
+    return out;
 }
 
 }  // namespace manylight

@@ -11,6 +11,13 @@ namespace manylight {
     return std::size_t{pass.tile_count} * CELLS_PER_TILE * pass.count;
 }
 
+/// A node that a pixel drew.
+struct DrawnNode {
+    uint node, slot;
+    float share;  // how often the pixel draws it on average
+    float end;    // of its shadow ray: positive where it passed, negative where not, 0 without one
+};
+
 /// Stage samples of sampler adaptive: draws nodes of the tile's cut for every pixel of a pass, then
 /// a light of each; shadow rays correct what the nodes' estimates times V^ got wrong.
 class AdaptiveStage {
@@ -26,8 +33,7 @@ class AdaptiveStage {
               const Buffer<Surface>& surfaces, const Cuts& cuts, const Visibility& visibility,
               float weight, bool start, Estimates& estimates);
 
-    /// What the last draw() did: the buffers drawn, shares, base, rays, values as kernels'
-    /// arguments.
+    /// What the last draw() did, as kernels' arguments (kernels/lib/cells.h).
     [[nodiscard]] Arguments draws() const;
 
     /// What the pixels of all launches of a pass over the batch were expected to be like, in the
@@ -36,25 +42,24 @@ class AdaptiveStage {
         return expectations_.download(0, pixels);
     }
 
-    // Of the last draw(); see kernels/samplers/adaptive.cl.
-    [[nodiscard]] const Buffer<uint>& drawn() const { return drawn_; }
-    [[nodiscard]] const Buffer<float>& shares() const { return shares_; }
-    [[nodiscard]] const Buffer<float>& rays() const { return shadows_.rays(); }
+    /// What each pixel of the pass of the last draw() drew.
+    [[nodiscard]] std::vector<std::vector<DrawnNode>> drawn(const Pass& pass) const;
 
     [[nodiscard]] static constexpr std::size_t packet_bytes() {
-        return ShadowStage::packet_bytes() + (48 + 2 * 16 + 4) * sizeof(float);
+        return ShadowStage::packet_bytes() + (64 + 48 + 2 + 3 + 1) * sizeof(float);
     }
 
   private:
     Arguments scene_;
-    bool reflections_;
     ShadowStage shadows_;
     Kernel draw_;
     Kernel aim_;
     Kernel add_;
-    Buffer<uint> drawn_;
-    Buffer<float> shares_;
-    Buffer<float4> base_;
+    Buffer<uint> draws_;
+    Buffer<uint> draw_counts_;
+    Buffer<uint> pixel_packets_;
+    Buffer<uint> packet_counts_;
+    Buffer<float> base_;
     Buffer<float> values_;
     Buffer<Expectation> expectations_;
 };

@@ -14,12 +14,10 @@ Arguments Cuts::arguments() const {
 
 CutStage::CutStage(Device& device, const DeviceScene& scene)
     : scene_(scene.arguments),
-      light_count_(scene.light_count),
       make_(device.kernel("cuts.cl", "cuts_make", scene.shading, "cuts")) {}
 
 void CutStage::make(const Tiles& tiles, const Buffer<Surface>& surfaces, const CutOptions& options,
                     Cuts& cuts) {
-    cuts.groups = light_count_ > options.size;
     make_.launch(tiles.count, Arguments(scene_)
                                   .set(cuts.arguments())
                                   .set("tiles", tiles)

@@ -15,7 +15,6 @@ struct Cuts {
     Buffer<uint> nodes;     // in the light trees, in their order
     Buffer<uint> sizes;     // [tile], 0 where nothing is hit
     Buffer<Trials> probes;  // what shadow rays from representatives said
-    bool groups = false;    // whether nodes may hold several lights
 
     /// As kernels' arguments cut_nodes, cut_sizes, probes.
     [[nodiscard]] Arguments arguments() const;
@@ -44,7 +43,6 @@ class CutStage {
 
   private:
     Arguments scene_;
-    uint light_count_;
     Kernel make_;
 };
 

@@ -2,12 +2,21 @@
 #include "stages/shadows.hpp"
 
 namespace manylight {
+namespace {
 
-ShadowStage::ShadowStage(Device& device, const DeviceScene& scene, std::size_t packets)
+Defines with_regions(Defines defines, bool regions) {
+    defines["HAS_REGIONS"] = regions;
+    return defines;
+}
+
+}  // namespace
+
+ShadowStage::ShadowStage(Device& device, const DeviceScene& scene, std::size_t packets,
+                         bool regions)
     : scene_(scene.arguments),
       trace_(device.kernel("shadows.cl",
                            scene.packets ? "shadows_trace_packets" : "shadows_trace_rays",
-                           scene.traversal, "shadows")),
+                           with_regions(scene.traversal, regions), "shadows")),
       rays_per_item_(scene.packets ? 16 : 1),
       origins_(device.allocate<float4>(packets)),
       rays_(device.allocate<float>(64 * packets)) {}
@@ -16,9 +25,10 @@ Arguments ShadowStage::buffers() const {
     return Arguments().set("origins", origins_).set("rays", rays_);
 }
 
-void ShadowStage::trace(std::size_t count, uint salt) {
+void ShadowStage::launch(std::size_t count, uint salt, const Arguments& regions) {
     trace_.launch(16 * count / rays_per_item_, Arguments(scene_)
                                                    .set(buffers())
+                                                   .set(regions)
                                                    .set("alpha_salt", salt)
                                                    .set("packet_count", static_cast<uint>(count)));
 }

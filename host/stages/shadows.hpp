@@ -9,8 +9,9 @@ namespace manylight {
 /// packets of 16 rays with one origin (layout: kernels/lib/rays.h), and read the result there.
 class ShadowStage {
   public:
-    /// Holds up to `packets` packets.
-    ShadowStage(Device& device, const DeviceScene& scene, std::size_t packets);
+    /// Holds up to `packets` packets; `regions`: in regions of which only the first are in use.
+    ShadowStage(Device& device, const DeviceScene& scene, std::size_t packets,
+                bool regions = false);
 
     /// The buffers, as kernels' arguments origins and rays.
     [[nodiscard]] Arguments buffers() const;
@@ -19,7 +20,12 @@ class ShadowStage {
     [[nodiscard]] const Buffer<float>& rays() const { return rays_; }
 
     /// Ends the rays of packets 0 to `count` that are occluded at -1. `salt` as PixelSample's.
-    void trace(std::size_t count, uint salt = 0);
+    void trace(std::size_t count, uint salt = 0) { launch(count, salt, {}); }
+
+    /// The same of regions of `region` packets, of which packet_counts[i] are in use.
+    void trace(std::size_t count, uint region, const Buffer<uint>& packet_counts, uint salt) {
+        launch(count, salt, Arguments().set("region", region).set("packet_counts", packet_counts));
+    }
 
     /// Bytes of a packet on the device.
     [[nodiscard]] static constexpr std::size_t packet_bytes() {
@@ -27,6 +33,8 @@ class ShadowStage {
     }
 
   private:
+    void launch(std::size_t count, uint salt, const Arguments& regions);
+
     Arguments scene_;
     Kernel trace_;
     std::size_t rays_per_item_;

@@ -28,7 +28,7 @@ VisibilityStage::VisibilityStage(Device& device, const DeviceScene& scene)
 }
 
 void VisibilityStage::learn(const Pass& pass, const Arguments& draws, Visibility& out) {
-    learn_.launch(std::size_t{pass.tile_count} * CELLS_PER_TILE,
+    learn_.launch(std::size_t{pass.tile_count} * 4,
                   Arguments(draws).set(out.arguments()).set("pass", pass));
 }
 

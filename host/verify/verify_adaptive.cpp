@@ -17,7 +17,6 @@ constexpr uint most_tiles = 9;
 constexpr uint probe_rays = 4;
 constexpr double control = 0.8;
 constexpr double darkest = 1e-9;  // cd/m2: a light just below the horizon
-constexpr uint no_draw = ~0u;
 constexpr const char* node_tolerance = "1e-3 (some 100 operations, lobes narrower than 1e-3 rad)";
 
 const uint place_order[16] = {12, 0, 4, 8, 3, 7, 11, 15, 1, 2, 5, 6, 9, 10, 13, 14};
@@ -31,10 +30,9 @@ struct Run {
     std::vector<Surface> surfaces;
     std::vector<uint> nodes, sizes;  // the cuts'
     std::vector<Trials> probes;
-    std::vector<uint> first_drawn, drawn;  // of the two passes
-    std::vector<float> first_rays, shares;
-    std::vector<uint> counts;    // after the first pass
-    std::vector<float> visible;  // likewise
+    std::vector<std::vector<DrawnNode>> first_drawn, drawn;  // [pixel of the pass]
+    std::vector<uint> counts;                                // after the first pass
+    std::vector<float> visible;                              // likewise
     std::vector<float4> estimates;
 
     Run(Device& device, const DeviceScene& scene, Tiles all, uint cut_size, uint seed,
@@ -58,15 +56,13 @@ struct Run {
         Estimates sums{device.allocate<float4>(item_count(tiles)), {}};
         stage.draw(tiles, first, {budget.samples, 0, 0}, sample, points, cuts, visibility, 1, true,
                    sums);
-        first_drawn = stage.drawn().download();
-        first_rays = stage.rays().download();
+        first_drawn = stage.drawn(first);
         learn.learn(first, stage.draws(), visibility);
         learn.estimate(tiles, cuts, visibility);
         counts = visibility.counts.download();
         visible = visibility.visible.download();
         stage.draw(tiles, second, budget, sample, points, cuts, visibility, 1, true, sums);
-        drawn = stage.drawn().download();
-        shares = stage.shares().download();
+        drawn = stage.drawn(second);
         estimates = sums.sums.download();
     }
 
@@ -76,7 +72,9 @@ struct Run {
     }
     // The item of a pixel of a pass.
     [[nodiscard]] static std::size_t item(const Pass& pass, std::size_t pixel) {
-        return 16 * (pixel / pass.count) + place_order[pass.first + pixel % pass.count];
+        const std::size_t group = pixel / 16;
+        return 16 * (16 * (group / pass.count) + pixel % 16) +
+               place_order[pass.first + group % pass.count];
     }
     [[nodiscard]] bool hit(std::size_t item) const {
         const glm::uvec2 at = item_pixel(tiles, item);
@@ -123,15 +121,12 @@ std::vector<reference::Rays> count_rays(const Run& run, uint tile) {
     std::vector<reference::Rays> counts(64 * std::size_t{run.sizes[tile]});
     const std::size_t pixels = std::size_t{64} * run.first.count;
     for (std::size_t p = tile * pixels; p < (tile + 1) * pixels; ++p)
-        for (std::size_t i = 0; i < 16 * run.first.packets; ++i) {
-            const std::size_t draw = 16 * run.first.packets * p + i;
-            if (run.first_drawn[draw] == no_draw) break;
-            const float end = run.first_rays[64 * (draw / 16) + 48 + draw % 16];
-            if (end == 0) continue;
-            reference::Rays& count =
-                counts[64 * (run.first_drawn[draw] >> 24) + p / run.first.count % 64];
+        for (const DrawnNode& draw : run.first_drawn[p]) {
+            if (draw.end == 0) continue;
+            const std::size_t cell = Run::item(run.first, p) / 16 % 64;
+            reference::Rays& count = counts[64 * draw.slot + cell];
             count.traced += 1;
-            count.passed += end > 0 ? 1 : 0;
+            count.passed += draw.end > 0 ? 1 : 0;
         }
     return counts;
 }
@@ -188,8 +183,7 @@ Check check_weights(const Run& run, const LightTree& tree, const Scene& scene, c
         std::vector<reference::DrawnPixel> pixels;
         std::vector<std::size_t> numbers;
         for (std::size_t cell = 0; cell < 16; ++cell) {
-            const std::size_t p =
-                (16 * quadrant + cell) * run.second.count + group % run.second.count;
+            const std::size_t p = 16 * group + cell;
             const std::size_t item = Run::item(run.second, p);
             const glm::uvec2 at = item_pixel(run.tiles, item);
             reference::DrawnPixel pixel{
@@ -206,27 +200,24 @@ Check check_weights(const Run& run, const LightTree& tree, const Scene& scene, c
             tree, scene, camera, std::span(run.nodes).subspan(tile * CUT_CAPACITY, run.sizes[tile]),
             pixels, run.budget);
         for (std::size_t cell = 0; cell < 16; ++cell) {
-            const std::size_t first = 16 * run.second.packets * numbers[cell];
             if (expected[cell].uncertain) {
                 check.skip_borderline();
                 continue;
             }
             const std::string name = fmt::format("pixel {} of the pass", numbers[cell]);
             const auto& draws = expected[cell].draws;
-            std::size_t count = 0;
-            while (count < 16 * run.second.packets && run.drawn[first + count] != no_draw) ++count;
+            const std::vector<DrawnNode>& found = run.drawn[numbers[cell]];
+            const std::size_t count = found.size();
             check.compare_exact(count == draws.size(),
                                 fmt::format("{}: {} draws, not {}", name, count, draws.size()));
             for (std::size_t i = 0; i < std::min(count, draws.size()); ++i) {
-                const uint entry = run.drawn[first + i];
                 check.compare_exact(
-                    entry >> 24 == draws[i].slot && (entry & 0x7fffff) == draws[i].node,
-                    fmt::format("{}, draw {}: node {}, not {}", name, i, entry & 0x7fffff,
+                    found[i].slot == draws[i].slot && found[i].node == draws[i].node,
+                    fmt::format("{}, draw {}: node {}, not {}", name, i, found[i].node,
                                 draws[i].node));
-                check.compare(std::abs(run.shares[first + i] - draws[i].share),
-                              1e-3 * draws[i].share,
-                              fmt::format("{}, draw {}: share {}, not {}", name, i,
-                                          run.shares[first + i], draws[i].share));
+                check.compare(std::abs(found[i].share - draws[i].share), 1e-3 * draws[i].share,
+                              fmt::format("{}, draw {}: share {}, not {}", name, i, found[i].share,
+                                          draws[i].share));
             }
         }
     }
@@ -254,16 +245,13 @@ Check check_samples(const Run& run, const LightTree& tree, const Scene& scene,
         glm::dvec3 sum(0);
         double magnitude = 0;
         bool uncertain = false;
-        const std::size_t begin = 16 * run.second.packets * p;
-        std::size_t end = begin;
-        while (end < begin + 16 * run.second.packets && run.drawn[end] != no_draw) ++end;
+        const std::vector<DrawnNode>& draws = run.drawn[p];
         // The control variate: of all nodes, as they were refined. Those are the cut's nodes, but
         // for what the 16 pixels of the group wanted: its sum comes from the same reference.
         std::vector<reference::DrawnPixel> group;
         const std::size_t quadrant = item / 256;
         for (std::size_t c = 0; c < 16; ++c) {
-            const std::size_t other = Run::item(
-                run.second, (16 * quadrant + c) * run.second.count + p % run.second.count);
+            const std::size_t other = Run::item(run.second, p / 16 * 16 + c);
             reference::DrawnPixel pixel{
                 run.hit(other) ? &run.surfaces[other] : nullptr, {0.5, 0.5}, {}};
             for (uint slot = 0; slot < run.sizes[tile]; ++slot)
@@ -276,31 +264,29 @@ Check check_samples(const Run& run, const LightTree& tree, const Scene& scene,
             group, run.budget)[item / 16 % 16];
         sum += control * own.control;
         magnitude += glm::length(own.control);
-        for (std::size_t i = begin; i < end; ++i) {
-            const uint entry = run.drawn[i];
-            const double share = run.shares[i];
+        for (std::size_t i = 0; i < draws.size(); ++i) {
+            const auto [node, slot, share, end] = draws[i];
             std::size_t first = i;  // of the draws of the same node
             std::size_t last = i;
-            while (first > begin && run.drawn[first - 1] == entry) --first;
-            while (last + 1 < end && run.drawn[last + 1] == entry) ++last;
-            const glm::dvec3 estimate = reference::node_estimate(tree, entry & 0x7fffff, point);
-            const glm::dvec3 taken = control * visibility(entry >> 24) / share * estimate;
+            while (first > 0 && draws[first - 1].node == node) --first;
+            while (last + 1 < draws.size() && draws[last + 1].node == node) ++last;
+            const glm::dvec3 estimate = reference::node_estimate(tree, node, point);
+            const glm::dvec3 taken = control * visibility(slot) / double{share} * estimate;
             sum -= taken;
             magnitude += glm::length(taken);
             const auto bits = reference::random_bits(
                 at.y * run.tiles.width + at.x, run.sample.index,
-                1024 * run.second.number + static_cast<uint>(i - begin), run.sample.seed);
+                1024 * run.second.number + static_cast<uint>(i), run.sample.seed);
             const double u = (static_cast<double>(i - first) + reference::unit_fraction(bits[0])) /
                              static_cast<double>(last - first + 1);
-            const reference::Descent d =
-                reference::descend(tree, entry & 0x7fffff, point, u, bits[3]);
+            const reference::Descent d = reference::descend(tree, node, point, u, bits[3]);
             uncertain = uncertain || d.uncertain;
             if (d.probability == 0) continue;
             const reference::Unshadowed term = reference::unshadowed(
                 point.surface, point.material(), camera, tree.lights[d.light],
                 {reference::unit_fraction(bits[1]), reference::unit_fraction(bits[2])});
             if (term.value == glm::dvec3(0)) continue;
-            const glm::dvec3 value = term.value / (share * d.probability);
+            const glm::dvec3 value = term.value / (double{share} * d.probability);
             magnitude += glm::length(value);
             if (!tracer.occluded(term.shadow)) sum += value;
             uncertain = uncertain || tracer.occlusion_is_borderline(

@@ -48,6 +48,11 @@ static uint lowest(uint lanes) { return 31u - (uint)clz(lanes & (0u - lanes)); }
 #define LANE(vector, lane) (((const float*)&(vector))[lane])
 #define SET_LANE(vector, lane, value) ((float*)&(vector))[lane] = (value)
 #define INT_LANE(vector, lane) (((int*)&(vector))[lane])
+// The number of each lane.
+static int16 numbers_16(void) {
+    return (int16)(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
+}
+
 #define UINT_LANE(vector, lane) (((uint*)&(vector))[lane])
 
 // A segment origin + t direction, 0 < t < end.

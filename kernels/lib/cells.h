@@ -11,22 +11,27 @@ __constant uchar place_order[16] = {12, 0, 4, 8, 3, 7, 11, 15, 1, 2, 5, 6, 9, 10
 
 // The item of pixel p of a pass.
 static uint pass_item(Pass pass, uint p) {
-    const uint cell = CELLS_PER_TILE * pass.first_tile + p / pass.count;
-    return 16u * cell + place_order[pass.first + p % pass.count];
+    const uint group = p / 16u;
+    const uint quadrant = 4u * pass.first_tile + group / pass.count;
+    return 16u * (16u * quadrant + p % 16u) + place_order[pass.first + group % pass.count];
 }
 
-static uint pass_pixels(Pass pass) { return pass.tile_count * CELLS_PER_TILE * pass.count; }
+static uint pass_groups(Pass pass) { return pass.tile_count * 4u * pass.count; }
 
-// A drawn node: its slot, its index, and whether its ray is made (it is a single light).
+// A drawn node: its slot and its index.
 #define DRAWN_SLOT(entry) ((entry) >> 24)
 #define DRAWN_NODE(entry) ((entry)&0x7fffffu)
-#define AIMED 0x800000u
 
-// drawn[...] of a pixel that has no more draws.
-#define NO_DRAW 0xffffffffu
+// What the draws of a group hold, by rows of 16: draws[DRAW_ROW(...) + draw % 16]. The group's
+// packets begin at group_packets().
+#define DRAW_ENTRY 0u    // the drawn node
+#define DRAW_CELL 1u     // cell; its how manieth draw << 4; which of `times` << 12; times << 20
+#define DRAW_SHARE 2u    // float: how often the pixel draws the node on average
+#define DRAW_CONTROL 3u  // float: what of the node's estimate the control variate loses
+#define DRAW_ROW(pass, group, draw, row) \
+    (64ul * (group_packets(pass, group) + (draw) / 16u) + 16u * (row))
 
-// Where in drawn[] the draws of pixel p begin.
-static uint first_draw(Pass pass, uint p) { return 16u * pass.packets * p; }
+static uint group_packets(Pass pass, uint group) { return 16u * pass.packets * group; }
 
 // Where slot 0 of a quadrant begins in arrays over slots and cells; `quadrant` counts over tiles.
 static ulong quadrant_slots(uint quadrant) { return 16ul * CUT_CAPACITY * quadrant; }

@@ -2,8 +2,9 @@
 // What a light tree's node contributes to surface points if nothing is in between: an estimate,
 // exact for a single point light, positive wherever a contribution is possible.
 //
-// Included once with LANES 1, for one point, and once with LANES 16, for 16 points: names end in
-// _1 and _16.
+// Included with LANES 1 and NODES 1 for a node and a point, with LANES 16 and NODES 1 for a node
+// and 16 points, and with LANES 16 and NODES 16 for 16 nodes, each with a point of its own. Names
+// end in _1, _16 and _16_16 then.
 #if LANES == 1
 #define REAL float
 #define NAMED(name) name##_1
@@ -13,7 +14,122 @@
 #define NAMED(name) name##_16
 #define WHERE(condition, yes, no) select(no, yes, condition)
 #endif
+#if NODES == 1
+#define NODE Node_1
+#define NODE_REAL float
+#define NODE_MASK int
+#define NODE_NAMED(name) NAMED(name)
+#define ANY_NODE(mask) (mask)
+#define WHERE_NODE(mask, yes, no) ((mask) ? (yes) : (no))
+#else
+#define NODE Node_16
+#define NODE_REAL float16
+#define NODE_MASK int16
+#define NODE_NAMED(name) name##_16_16
+#define ANY_NODE(mask) (lanes_16(mask) != 0u)
+#define WHERE_NODE(mask, yes, no) select(no, yes, mask)
+#endif
 
+#if LANES == 1 || NODES == 16
+// A node of the light tree, or 16 of them, with what is needed of their lights.
+typedef struct NODE {
+    NODE_REAL x, y, z, spread;           // mean position, mean squared distance to it
+    NODE_REAL ax, ay, az;                // mean axis; of an emitter with area its unit normal
+    NODE_REAL iso;                       // the share of light without axis; two sides: above 0
+    NODE_REAL red, green, blue, radius;  // intensity; all lights are so close to the mean position
+#if HAS_POINT || HAS_SPOT
+    NODE_REAL falloff;  // 1 / range^2, 0 without a range
+#endif
+#if HAS_SPOT
+    NODE_REAL scale, offset;  // of the cone, 0 and 1 without one
+#endif
+#if NODES == 1
+    uint kind;  // LIGHT_DIRECTIONAL for groups of them, too
+#else
+    uint16 kind;
+#endif
+} NODE;
+#endif
+
+#if LANES == 1
+// 1 / range^2, 0 where there is no range.
+static float inverse_square(float range) { return range > 0.0f ? 1.0f / (range * range) : 0.0f; }
+
+static Node_1 load_node(__global const LightNode* node, __global const Light* lights) {
+    Node_1 n;
+    n.x = node->centre.x;
+    n.y = node->centre.y;
+    n.z = node->centre.z;
+    n.spread = node->centre.w;
+    n.ax = node->axis.x;
+    n.ay = node->axis.y;
+    n.az = node->axis.z;
+    n.iso = node->axis.w;
+    n.red = node->intensity.x;
+    n.green = node->intensity.y;
+    n.blue = node->intensity.z;
+    n.radius = node->intensity.w;
+    n.kind = node->infinite ? LIGHT_DIRECTIONAL : node->kind;
+#if HAS_POINT || HAS_SPOT
+    n.falloff = n.kind == LIGHT_POINT || n.kind == LIGHT_SPOT
+                    ? inverse_square(lights[node->first].axis.w)
+                    : 0.0f;
+#endif
+#if HAS_SPOT
+    n.scale = n.kind == LIGHT_SPOT ? lights[node->first].edge.x : 0.0f;
+    n.offset = n.kind == LIGHT_SPOT ? lights[node->first].edge.y : 1.0f;
+#endif
+    return n;
+}
+#elif NODES == 16
+// The nodes of all lanes, with their numbers of lights and the first of these.
+static Node_16 load_nodes_16(__global const LightNode* nodes, __global const Light* lights,
+                             uint16 indices, uint16* first, uint16* count) {
+    float16 rows[16];
+    for (uint lane = 0u; lane < 16u; ++lane)
+        rows[lane] = vload16(0, (__global const float*)(nodes + UINT_LANE(indices, lane)));
+    transpose_16(rows);
+    *first = as_uint16(rows[12]);
+    *count = as_uint16(rows[13]);
+    Node_16 n;
+    n.x = rows[0];
+    n.y = rows[1];
+    n.z = rows[2];
+    n.spread = rows[3];
+    n.ax = rows[4];
+    n.ay = rows[5];
+    n.az = rows[6];
+    n.iso = rows[7];
+    n.red = rows[8];
+    n.green = rows[9];
+    n.blue = rows[10];
+    n.radius = rows[11];
+    n.kind = select(as_uint16(rows[15]), (uint16)(LIGHT_DIRECTIONAL),
+                    as_uint16(as_uint16(rows[14]) != 0u));
+    // What single lights have of their own.
+#if HAS_POINT || HAS_SPOT
+    n.falloff = (float16)(0.0f);
+    uint lanes = lanes_16((n.kind == LIGHT_POINT) | (n.kind == LIGHT_SPOT));
+    for (; lanes; lanes &= lanes - 1u) {
+        const uint lane = lowest(lanes);
+        SET_LANE(n.falloff, lane, inverse_square(lights[UINT_LANE(*first, lane)].axis.w));
+    }
+#endif
+#if HAS_SPOT
+    n.scale = (float16)(0.0f);
+    n.offset = (float16)(1.0f);
+    for (lanes = lanes_16(n.kind == LIGHT_SPOT); lanes; lanes &= lanes - 1u) {
+        const uint lane = lowest(lanes);
+        __global const Light* light = lights + UINT_LANE(*first, lane);
+        SET_LANE(n.scale, lane, light->edge.x);
+        SET_LANE(n.offset, lane, light->edge.y);
+    }
+#endif
+    return n;
+}
+#endif
+
+#if NODES == 1
 // Surface points, by coordinates.
 typedef struct NAMED(Points) {
     REAL px, py, pz;        // positions
@@ -40,92 +156,21 @@ static REAL NAMED(dot3)(REAL ax, REAL ay, REAL az, REAL bx, REAL by, REAL bz) {
 // (k + sqrt(k^2 + v)) / 2: max(k, 0), smoothed over sqrt(v); positive where v is, whatever the
 // rounding.
 static REAL NAMED(soft)(REAL k, REAL v) {
-    const REAL t = 0.5f * (fabs(k) + sqrt(fma(k, k, v)));
-    return WHERE(k >= 0.0f, t, 0.25f * v / max(t, (REAL)(1e-30f)));
-}
-
-// The lights' part: their intensity's factor and the unit direction to their centre. 0 where none
-// of them can be above the surface.
-static REAL NAMED(node_geometry)(__global const LightNode* node, __global const Light* lights,
-                                 const NAMED(Points) * p, REAL* wx, REAL* wy, REAL* wz,
-                                 REAL* spread) {
-    const float3 c = node->centre.xyz;
-#if HAS_DIRECTIONAL
-    if (node->infinite) {
-        const float length2 = dot(c, c);
-        const float3 towards = c * (1.0f / sqrt(max(length2, 1e-30f)));
-        *wx = (REAL)(towards.x);
-        *wy = (REAL)(towards.y);
-        *wz = (REAL)(towards.z);
-        *spread = (REAL)(node->centre.w);
-        const REAL k = NAMED(dot3)(p->nx, p->ny, p->nz, *wx, *wy, *wz);
-        return WHERE(k + node->intensity.w <= 0.0f, (REAL)(0.0f), NAMED(soft)(k, *spread));
-    }
-#endif
-    const REAL dx = c.x - p->px, dy = c.y - p->py, dz = c.z - p->pz;
-    const REAL distance2 = NAMED(dot3)(dx, dy, dz, dx, dy, dz);
-    const REAL inverse = 1.0f / sqrt(max(distance2, (REAL)(1e-30f)));
-    *wx = dx * inverse;
-    *wy = dy * inverse;
-    *wz = dz * inverse;
-    const REAL softened = 1.0f / max(distance2 + node->centre.w, (REAL)(1e-30f));  // 1 / e^2
-    *spread = node->centre.w * softened;
-    const REAL k = NAMED(dot3)(p->nx, p->ny, p->nz, *wx, *wy, *wz);
-    const REAL incidence = NAMED(soft)(k, *spread) * softened;
-    REAL emission = (REAL)(1.0f);
-    const float3 a = node->axis.xyz;
-    const REAL along = -NAMED(dot3)((REAL)(a.x), (REAL)(a.y), (REAL)(a.z), *wx, *wy, *wz);
-    switch (node->kind) {
-#if HAS_POINT || HAS_SPOT
-        case LIGHT_POINT:
-        case LIGHT_SPOT: {
-            __global const Light* light = lights + node->first;
-            const float range = light->axis.w;
-            if (range > 0.0f) {
-                const REAL ratio = distance2 * (1.0f / (range * range));
-                emission = clamp(1.0f - ratio * ratio, 0.0f, 1.0f);
-            }
-            if (node->kind == LIGHT_SPOT) {
-                const REAL cone = clamp(along * light->edge.x + light->edge.y, 0.0f, 1.0f);
-                emission *= cone * cone;
-            }
-            break;
-        }
-#endif
-#if HAS_TRIANGLE || HAS_QUAD
-        case LIGHT_QUAD:
-        case LIGHT_TRIANGLE: {
-            // The height over the emitter's plane: the same, whichever of its points is seen.
-            REAL height = along * distance2 * inverse;
-            if (node->axis.w > 0.0f) {  // two sides
-                __global const Light* light = lights + node->first;
-                const float3 n = normalize(cross(light->axis.xyz, light->edge.xyz));
-                height = fabs(NAMED(dot3)(dx, dy, dz, (REAL)(n.x), (REAL)(n.y), (REAL)(n.z)));
-            }
-            emission = max(height, (REAL)(0.0f)) * sqrt(softened);
-            break;
-        }
-#endif
-        default: {
-            const float iso = node->axis.w;
-            const float o2 = (1.0f - iso) * (1.0f - iso);
-            const float delta = max(o2 - dot(a, a), 0.0f) / 3.0f;
-            emission = iso + (iso < 1.0f ? NAMED(soft)(along, *spread * o2 + delta) : (REAL)(0.0f));
-        }
-    }
-    return WHERE(k + node->intensity.w * inverse <= 0.0f, (REAL)(0.0f), incidence * emission);
+    const REAL t = 0.5f * (fabs(k) + NAMED(root)(fma(k, k, v)));
+    return WHERE(k >= 0.0f, t, 0.25f * v * NAMED(inverse)(max(t, (REAL)(1e-30f))));
 }
 
 // Radiance reflected to the camera per illuminance from unit directions w: glTF's BRDF (lib/brdf.h)
 // with a lobe that is widened by the lights' squared angular spread, times cosines and all else in
-// `factor`.
+// `factor`. What stage reflections has of a light of `solid_angle` is left to it.
 static NAMED(Color) NAMED(reflect)(const NAMED(Points) * p, REAL wx, REAL wy, REAL wz, REAL spread,
-                                   REAL factor, float3 intensity) {
+                                   REAL solid_angle, REAL factor) {
     NAMED(Color) c;
 #if HAS_GGX
     if (p->glossy) {
         REAL hx = wx + p->vx, hy = wy + p->vy, hz = wz + p->vz;
-        const REAL scale = 1.0f / sqrt(max(NAMED(dot3)(hx, hy, hz, hx, hy, hz), (REAL)(1e-30f)));
+        const REAL scale =
+            NAMED(inverse_root)(max(NAMED(dot3)(hx, hy, hz, hx, hy, hz), (REAL)(1e-30f)));
         hx *= scale;
         hy *= scale;
         hz *= scale;
@@ -139,9 +184,14 @@ static NAMED(Color) NAMED(reflect)(const NAMED(Points) * p, REAL wx, REAL wy, RE
         const REAL sy = fma(p->nz, hx, -p->nx * hz);
         const REAL sz = fma(p->nx, hy, -p->ny * hx);
         const REAL width = fma(a2 * n_h, n_h, NAMED(dot3)(sx, sy, sz, sx, sy, sz));
-        const REAL smith = (n_in + sqrt(fma(1.0f - a2, n_in * n_in, a2))) *
-                           (n_out + sqrt(fma(1.0f - a2, n_out * n_out, a2)));
-        const REAL lobe = a2 / (M_PI_F * width * width * smith);
+        const REAL in = n_in + NAMED(root)(fma(1.0f - a2, n_in * n_in, a2));
+        const REAL out = n_out + NAMED(root)(fma(1.0f - a2, n_out * n_out, a2));
+        const REAL across = NAMED(inverse)(max(width, (REAL)(1e-30f)));
+        REAL lobe = M_1_PI_F * a2 * across * across * NAMED(inverse)(in * out);
+#if HAS_REFLECTIONS
+        const REAL ratio = 0.5f * lobe * in * solid_angle;  // light_share() of lib/brdf.h
+        lobe *= NAMED(inverse)(fma(ratio, ratio, (REAL)(1.0f)));
+#endif
         const REAL m = max(1.0f - fabs(NAMED(dot3)(p->vx, p->vy, p->vz, hx, hy, hz)), (REAL)(0.0f));
         const REAL fresnel = (m * m) * (m * m) * m;
 #if HAS_REFLECTANCE
@@ -152,42 +202,119 @@ static NAMED(Color) NAMED(reflect)(const NAMED(Points) * p, REAL wx, REAL wy, RE
         const REAL metal = p->metallic * lobe * fresnel;
         const REAL base = (1.0f - p->metallic) * (1.0f - max(max(red, green), blue)) * M_1_PI_F +
                           p->metallic * lobe * (1.0f - fresnel);
-        c.red = factor * intensity.x * (fma(p->red, base, metal) + ks * red);
-        c.green = factor * intensity.y * (fma(p->green, base, metal) + ks * green);
-        c.blue = factor * intensity.z * (fma(p->blue, base, metal) + ks * blue);
+        c.red = factor * (fma(p->red, base, metal) + ks * red);
+        c.green = factor * (fma(p->green, base, metal) + ks * green);
+        c.blue = factor * (fma(p->blue, base, metal) + ks * blue);
         return c;
 #else
         const REAL dielectric = p->specular * fma((REAL)(0.96f), fresnel, (REAL)(0.04f));
         const REAL kd = (1.0f - p->metallic) * (1.0f - dielectric) * M_1_PI_F;
         const REAL ks = (1.0f - p->metallic) * dielectric * lobe + p->metallic * lobe * fresnel;
         const REAL base = kd + p->metallic * lobe * (1.0f - fresnel);
-        c.red = factor * intensity.x * fma(p->red, base, ks);
-        c.green = factor * intensity.y * fma(p->green, base, ks);
-        c.blue = factor * intensity.z * fma(p->blue, base, ks);
+        c.red = factor * fma(p->red, base, ks);
+        c.green = factor * fma(p->green, base, ks);
+        c.blue = factor * fma(p->blue, base, ks);
         return c;
 #endif
     }
 #endif
     factor *= M_1_PI_F;
-    c.red = factor * intensity.x * p->red;
-    c.green = factor * intensity.y * p->green;
-    c.blue = factor * intensity.z * p->blue;
+    c.red = factor * p->red;
+    c.green = factor * p->green;
+    c.blue = factor * p->blue;
     return c;
-}
-
-// The node's radiance reflected to the camera, cd/m2: intensity x geometry x BRDF towards the
-// centre.
-static NAMED(Color) NAMED(node_estimate)(__global const LightNode* node,
-                                         __global const Light* lights, const NAMED(Points) * p) {
-    REAL wx, wy, wz, spread;
-    const REAL geometry = NAMED(node_geometry)(node, lights, p, &wx, &wy, &wz, &spread);
-    return NAMED(reflect)(p, wx, wy, wz, spread, geometry, node->intensity.xyz);
 }
 
 static REAL NAMED(color_luminance)(NAMED(Color) c) {
     return 0.2126f * c.red + 0.7152f * c.green + 0.0722f * c.blue;
 }
+#endif
+
+// The lights' part: their intensity's factor and the unit direction to their centre. 0 where none
+// of them can be above the surface.
+static REAL NODE_NAMED(node_geometry)(const NODE* node, const NAMED(Points) * p, REAL* wx, REAL* wy,
+                                      REAL* wz, REAL* spread) {
+    const REAL dx = node->x - p->px, dy = node->y - p->py, dz = node->z - p->pz;
+    const REAL distance2 = NAMED(dot3)(dx, dy, dz, dx, dy, dz);
+    const REAL inverse = NAMED(inverse_root)(max(distance2, (REAL)(1e-30f)));
+    *wx = dx * inverse;
+    *wy = dy * inverse;
+    *wz = dz * inverse;
+    const REAL softened = NAMED(inverse)(max(distance2 + node->spread, (REAL)(1e-30f)));  // 1 / e^2
+    *spread = node->spread * softened;
+    const REAL k = NAMED(dot3)(p->nx, p->ny, p->nz, *wx, *wy, *wz);
+    const REAL incidence = NAMED(soft)(k, *spread) * softened;
+    REAL emission = (REAL)(1.0f);
+    const REAL along =
+        -NAMED(dot3)((REAL)(node->ax), (REAL)(node->ay), (REAL)(node->az), *wx, *wy, *wz);
+#if HAS_POINT || HAS_SPOT
+    if (ANY_NODE(node->falloff > 0.0f)) {
+        const REAL ratio = distance2 * node->falloff;
+        emission = clamp(1.0f - ratio * ratio, 0.0f, 1.0f);
+    }
+#endif
+#if HAS_SPOT
+    if (ANY_NODE(node->kind == LIGHT_SPOT)) {
+        const REAL cone = clamp(along * node->scale + node->offset, 0.0f, 1.0f);
+        emission *= cone * cone;
+    }
+#endif
+#if HAS_TRIANGLE || HAS_QUAD
+    const NODE_MASK area = (node->kind == LIGHT_TRIANGLE) | (node->kind == LIGHT_QUAD);
+    if (ANY_NODE(area)) {
+        // The height over the emitter's plane: the same, whichever of its points is seen.
+        const REAL height = along * distance2 * inverse;
+        const REAL above = WHERE_NODE(node->iso > 0.0f, fabs(height), max(height, (REAL)(0.0f)));
+        emission = WHERE_NODE(area, above * NAMED(root)(softened), emission);
+    }
+#endif
+    const NODE_MASK cosines = (node->kind == NODE_GROUP) | (node->kind == LIGHT_ORIENTED);
+    if (ANY_NODE(cosines)) {
+        const NODE_REAL o = 1.0f - node->iso, o2 = o * o;
+        const NODE_REAL axis2 = node->ax * node->ax + node->ay * node->ay + node->az * node->az;
+        const NODE_REAL delta = max(o2 - axis2, 0.0f) / 3.0f;
+        const REAL lobe = NAMED(soft)(along, *spread * o2 + delta);
+        const REAL mixed = node->iso + WHERE_NODE(node->iso < 1.0f, lobe, (REAL)(0.0f));
+        emission = WHERE_NODE(cosines, mixed, emission);
+    }
+    const REAL finite =
+        WHERE(k + node->radius * inverse <= 0.0f, (REAL)(0.0f), incidence * emission);
+#if HAS_DIRECTIONAL
+    const NODE_MASK infinite = node->kind == LIGHT_DIRECTIONAL;
+    if (ANY_NODE(infinite)) {  // the position is a direction
+        const NODE_REAL length2 = node->x * node->x + node->y * node->y + node->z * node->z;
+        const NODE_REAL scale = 1.0f / sqrt(max(length2, 1e-30f));
+        *wx = WHERE_NODE(infinite, (REAL)(node->x * scale), *wx);
+        *wy = WHERE_NODE(infinite, (REAL)(node->y * scale), *wy);
+        *wz = WHERE_NODE(infinite, (REAL)(node->z * scale), *wz);
+        *spread = WHERE_NODE(infinite, (REAL)(node->spread), *spread);
+        const REAL facing = NAMED(dot3)(p->nx, p->ny, p->nz, *wx, *wy, *wz);
+        const REAL all =
+            WHERE(facing + node->radius <= 0.0f, (REAL)(0.0f), NAMED(soft)(facing, *spread));
+        return WHERE_NODE(infinite, all, finite);
+    }
+#endif
+    return finite;
+}
+
+// The node's radiance reflected to the camera, cd/m2: intensity x geometry x BRDF towards the
+// centre.
+static NAMED(Color) NODE_NAMED(node_estimate)(const NODE* node, const NAMED(Points) * p) {
+    REAL wx, wy, wz, spread;
+    const REAL geometry = NODE_NAMED(node_geometry)(node, p, &wx, &wy, &wz, &spread);
+    NAMED(Color) c = NAMED(reflect)(p, wx, wy, wz, spread, (REAL)(0.0f), geometry);
+    c.red *= node->red;
+    c.green *= node->green;
+    c.blue *= node->blue;
+    return c;
+}
 
 #undef REAL
 #undef NAMED
 #undef WHERE
+#undef NODE
+#undef NODE_REAL
+#undef NODE_MASK
+#undef NODE_NAMED
+#undef ANY_NODE
+#undef WHERE_NODE

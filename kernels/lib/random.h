@@ -45,6 +45,13 @@ static uint step_bits(uint bits, uint i) {
     return (word >> 22) ^ word;
 }
 
+// The same for 16.
+static uint16 step_bits_16(uint16 bits, uint i) {
+    const uint16 state = (bits + i * 0x9e3779b9u) * 747796405u + 2891336453u;
+    const uint16 word = ((state >> ((state >> 28u) + 4u)) ^ state) * 277803737u;
+    return (word >> 22u) ^ word;
+}
+
 // The dimension that seeds the position of a pixel's samples; light samples use their own index.
 #define RANDOM_PIXEL_POSITION 0xffffffffu
 // The dimensions of one pass of sampler adaptive.
@@ -57,6 +64,8 @@ static uint step_bits(uint bits, uint i) {
 
 // A float in [0, 1) from the top 24 bits.
 static float unit_float(uint bits) { return (float)(bits >> 8) * 0x1p-24f; }
+
+static float16 unit_float_16(uint16 bits) { return convert_float16(bits >> 8u) * 0x1p-24f; }
 
 static uint reverse_bits(uint v) {
     v = (v >> 16) | (v << 16);

@@ -26,8 +26,9 @@ typedef struct Trials {
 SHARED_SIZE(Trials, 8)
 
 /// What a launch of a pass works on: in a run of tiles of the batch, the places order[first] to
-/// order[first + count - 1] of every cell. Pixel p of the pass is place first + p % count of cell
-/// CELLS_PER_TILE * first_tile + p / count of the batch; its draws are `packets` packets of 16.
+/// order[first + count - 1] of every cell. Pixel p of the pass is in cell p % 16 of group p / 16;
+/// group g is place first + g % count of quadrant 4 * first_tile + g / count of the batch. A pixel
+/// has up to `packets` packets of 16 draws.
 typedef struct Pass {
     uint first;
     uint count;
@@ -45,6 +46,10 @@ typedef struct Budget {
     float exposure;  // times luminance: about 0.5 on average
 } Budget;
 SHARED_SIZE(Budget, 12)
+
+/// The share of what is thought to be visible that is taken from the nodes' estimates rather than
+/// from shadow rays: a control variate.
+#define CONTROL 0.8f
 
 /// A pixel's draws are between these, times the average.
 #define FEWEST_DRAWS 0.25f

@@ -16,19 +16,21 @@ SHARED_BEGIN
 /// positions are unit directions to the lights.
 typedef struct LightNode {
     float4 centre;     // xyz: mean position; w: mean squared distance to it
-    float4 axis;       // xyz: mean emission axis, 0 for a light without one; w: phi's share of
-                       // lights without one (emitters of two sides count with half of theirs)
+    float4 axis;       // xyz: mean emission axis, 0 for a light without one, for a leaf of two
+                       // sides the unit normal; w: phi's share of lights without one (emitters of
+                       // two sides count with half of theirs)
     float4 intensity;  // rgb: sum; w: radius about the centre that holds all lights
-    float4 lower;      // xyz: bounds; w: cosine of the bound on the angle between cone and axes
-    float4 upper;      // xyz: bounds; w: cosine of the largest angle off its axis that a light
-                       // emits at, at most a right angle; below 0: everywhere
-    float4 cone;       // xyz: unit axis of the cone that holds all emission axes; w: sum of power
     uint first;
     uint count;
     uint infinite;  // 1 where the lights are directional
     uint kind;      // of a leaf its LightKind, of an inner node NODE_GROUP
+    float4 lower;   // xyz: bounds; w: cosine of the bound on the angle between cone and axes
+    float4 upper;   // xyz: bounds; w: cosine of the largest angle off its axis that a light
+                    // emits at, at most a right angle; below 0: everywhere
+    float4 cone;    // xyz: unit axis of the cone that holds all emission axes; w: sum of power
+    float4 unused;  // the first half, all that estimates need, is one line of a cache
 } LightNode;
-SHARED_SIZE(LightNode, 112)
+SHARED_SIZE(LightNode, 128)
 
 #define NODE_GROUP 100
 

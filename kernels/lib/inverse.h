@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: MIT
+// Reciprocals and roots within a few roundings. Of 16 numbers, exact ones would take most of the
+// time of what they are used in.
+#ifndef MANYLIGHT_LIB_INVERSE_H
+#define MANYLIGHT_LIB_INVERSE_H
+
+// 1 / x, of numbers from 1e-30 to 1e30.
+static float16 inverse_16(float16 x) {
+#if defined(__AVX512F__) && !defined(PORTABLE_LANES)
+    const float16 r = __builtin_ia32_rcp14ps512_mask(x, x, (ushort)0xffffu);
+    return fma(r, fma(-x, r, 1.0f), r);
+#else
+    return 1.0f / x;
+#endif
+}
+
+// 1 / sqrt(x), of the same.
+static float16 inverse_root_16(float16 x) {
+#if defined(__AVX512F__) && !defined(PORTABLE_LANES)
+    const float16 r = __builtin_ia32_rsqrt14ps512_mask(x, x, (ushort)0xffffu);
+    return fma(0.5f * r, fma(-x * r, r, 1.0f), r);
+#else
+    return 1.0f / sqrt(x);
+#endif
+}
+
+// sqrt(x), of numbers from 0 to 1e30.
+static float16 root_16(float16 x) { return x * inverse_root_16(max(x, 1e-30f)); }
+
+static float inverse_1(float x) { return 1.0f / x; }
+static float inverse_root_1(float x) { return 1.0f / sqrt(x); }
+static float root_1(float x) { return sqrt(x); }
+
+#endif
