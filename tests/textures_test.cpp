@@ -159,8 +159,9 @@ TEST(textures, levels_by_the_area_seen) {
     for (const uint between : {LEVELS_NEAREST, LEVELS_BLENDED})
         for (const double texels_per_pixel : {2.0, 8.0, 100.0}) {
             texture.between = between;
-            // 64 pixels of texels_per_pixel texels each; the square has 8.
-            const Camera camera = camera_on(texels_per_pixel / 8 * 64, {0.01, 0.01});
+            // The square's 8 texels are 0.25 m; pixel (31, 31) is in its middle.
+            const double pixel = 0.25 * texels_per_pixel;
+            const Camera camera = camera_on(32 * pixel, glm::dvec2(pixel / 2 + 0.01, -pixel / 2));
             expect_color(trace(device, scene, camera).at(31, 31), mean, 0.004f);
         }
     texture.between = LEVELS_FINEST;
