@@ -38,7 +38,7 @@ static void add_sample(Tiles tiles, uint item, IMAGE_PARAMETERS) {
 #if HAS_EMISSION
     __global const Surface* surface = surfaces + item;
     if (surface->position.w >= 0.0f) {
-        const float4 emission = materials[surface->material].emission;
+        const float4 emission = materials[surface->shading].emission;
         if (surface->front || emission.w != 0.0f) term.xyz += emission.xyz;
     }
 #endif

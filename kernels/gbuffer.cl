@@ -2,21 +2,53 @@
 // Stage gbuffer: one primary ray per pixel of a run of tiles.
 #include "lib/packet.h"
 #include "lib/random.h"
+#include "lib/textures.h"
 #include "lib/tiles.h"
 #include "shared/camera.h"
+#include "shared/material.h"
 #include "shared/surface.h"
 
+// What varies materials within a triangle; then every point has one of its own.
+#define VARIES_MATERIALS (HAS_TEXTURES || HAS_COLORS)
+
 #if HAS_SMOOTH
-#define MESH_PARAMETERS                                                   \
-    __global const float *vertices, __global const float *vertex_normals, \
-        __global const uint *indices, __global const uint *triangle_materials
-#define MESH_ARGUMENTS vertices, vertex_normals, indices, triangle_materials
+#define NORMAL_PARAMETERS , __global const float* vertex_normals
+#define NORMAL_ARGUMENTS , vertex_normals
 #else
-#define MESH_PARAMETERS                                           \
-    __global const float *vertices, __global const uint *indices, \
-        __global const uint *triangle_materials
-#define MESH_ARGUMENTS vertices, indices, triangle_materials
+#define NORMAL_PARAMETERS
+#define NORMAL_ARGUMENTS
 #endif
+#if VARIES_MATERIALS
+#define MATERIAL_PARAMETERS , __global Material *materials, uint own_materials
+#define MATERIAL_ARGUMENTS , materials, own_materials
+#else
+#define MATERIAL_PARAMETERS
+#define MATERIAL_ARGUMENTS
+#endif
+#if HAS_TEXTURES && HAS_TANGENTS
+#define MAP_PARAMETERS , TEXTURE_PARAMETERS, __global const float4* tangents
+#define MAP_ARGUMENTS , TEXTURE_ARGUMENTS, tangents
+#elif HAS_TEXTURES
+#define MAP_PARAMETERS , TEXTURE_PARAMETERS
+#define MAP_ARGUMENTS , TEXTURE_ARGUMENTS
+#else
+#define MAP_PARAMETERS
+#define MAP_ARGUMENTS
+#endif
+#if HAS_COLORS
+#define COLOR_PARAMETERS , __global const float4* colors
+#define COLOR_ARGUMENTS , colors
+#else
+#define COLOR_PARAMETERS
+#define COLOR_ARGUMENTS
+#endif
+#define MESH_PARAMETERS                                                               \
+    __global const float *vertices, __global const uint *indices,                     \
+        __global const uint *triangle_materials NORMAL_PARAMETERS MATERIAL_PARAMETERS \
+            MAP_PARAMETERS COLOR_PARAMETERS
+#define MESH_ARGUMENTS \
+    vertices, indices, \
+        triangle_materials NORMAL_ARGUMENTS MATERIAL_ARGUMENTS MAP_ARGUMENTS COLOR_ARGUMENTS
 
 // The primary ray of an item; `jitter` 0 puts it through the pixel's centre.
 static Ray primary_ray(Tiles tiles, uint item, Camera camera, uint jitter, uint pixel_sample,
@@ -35,9 +67,42 @@ static Ray primary_ray(Tiles tiles, uint item, Camera camera, uint jitter, uint 
     return ray;
 }
 
+// The area of a surface, with that unit normal, that a pixel sees at a distance along its ray.
+static float seen_area(Tiles tiles, Camera camera, Ray ray, float distance, float3 normal) {
+    const float3 image = cross(camera.right.xyz, camera.up.xyz);  // a quarter, at distance 1
+    const float pixel = 4.0f * length(image) / ((float)tiles.width * (float)tiles.height);
+    const float forward = dot(camera.forward.xyz, ray.direction);
+    const float enlarged =
+        camera.forward.w != 0.0f ? 1.0f : forward * forward * forward * distance * distance;
+    return pixel * enlarged / fabs(dot(normal, ray.direction));
+}
+
+// The direction in which a texture's u grows along a triangle; w: 1, or -1 where the image is
+// mirrored, as glTF's tangents have it.
+static float4 tangent_of(MapCorners at, float3 edge1, float3 edge2) {
+    const float area = at.edge1.x * at.edge2.y - at.edge1.y * at.edge2.x;
+    const float3 along = edge1 * at.edge2.y - edge2 * at.edge1.y;
+    return (float4)(area < 0.0f ? -along : along, area < 0.0f ? 1.0f : -1.0f);
+}
+
+// The shading normal that a normal map's texel means, beside `normal`, which is on the viewer's
+// side; as it is where there is no tangent.
+static float3 map_normal(float3 texel, float scale, float3 normal, float4 tangent, bool front) {
+    const float3 along = tangent.xyz - normal * dot(normal, tangent.xyz);
+    const float squared = dot(along, along);
+    if (!(squared > 0.0f)) return normal;
+    const float3 x = along / sqrt(squared);
+    const float3 y = cross(normal, x);
+    const float3 in = (2.0f * texel - 1.0f) * (float3)(scale, scale, 1.0f);
+    const float3 mapped =
+        x * (front ? in.x : -in.x) + y * (tangent.w < 0.0f ? -in.y : in.y) + normal * in.z;
+    return dot(mapped, mapped) > 0.0f ? normalize(mapped) : normal;
+}
+
 // The surface where a ray hits a triangle; ~0: none.
-static void write_surface(__global Surface* surface, Ray ray, uint triangle, float distance,
-                          MESH_PARAMETERS) {
+static void write_surface(Tiles tiles, Camera camera, __global Surface* surfaces, uint item,
+                          Ray ray, uint triangle, float distance, MESH_PARAMETERS) {
+    __global Surface* surface = surfaces + item;
     if (triangle == ~0u) {
         surface->position = (float4)(0.0f, 0.0f, 0.0f, -1.0f);
         return;
@@ -63,8 +128,52 @@ static void write_surface(__global Surface* surface, Ray ray, uint triangle, flo
     surface->normal = (float4)(normal, 0.0f);
     surface->geometric = (float4)(geometric, OFFSET_SCALE * extent);
     surface->triangle = triangle;
-    surface->material = triangle_materials[triangle];
+    const uint material = triangle_materials[triangle];
+    surface->material = material;
     surface->front = front ? 1u : 0u;
+#if VARIES_MATERIALS
+    Material own = materials[material];
+    float3 color = (float3)(1.0f);
+#if HAS_COLORS
+    color = colors[corner[0]].xyz * (1.0f - weights.x - weights.y) +
+            colors[corner[1]].xyz * weights.x + colors[corner[2]].xyz * weights.y;
+#endif
+#if HAS_TEXTURES
+    const float share =
+        seen_area(tiles, camera, ray, distance, geometric) / max(length(face), 1e-30f);
+    const uint map = MAP_KIND_COUNT * material;
+    color *= sample_map(TEXTURE_ARGUMENTS, map + MAP_BASE_COLOR, corner, weights, share).xyz;
+    const float4 polish =
+        sample_map(TEXTURE_ARGUMENTS, map + MAP_METALLIC_ROUGHNESS, corner, weights, share);
+    own.base_color.w *= polish.z;
+    own.roughness = max(own.roughness * polish.y * polish.y, SMALLEST_ALPHA);
+    own.emission.xyz *=
+        sample_map(TEXTURE_ARGUMENTS, map + MAP_EMISSION, corner, weights, share).xyz;
+    if (maps[map + MAP_NORMAL].texture != NO_TEXTURE) {
+        const float3 texel =
+            sample_map(TEXTURE_ARGUMENTS, map + MAP_NORMAL, corner, weights, share).xyz;
+        float4 tangent = (float4)(0.0f);
+#if HAS_TANGENTS
+        tangent = tangents[corner[0]] * (1.0f - weights.x - weights.y) +
+                  tangents[corner[1]] * weights.x + tangents[corner[2]] * weights.y;
+#endif
+        if (dot(tangent.xyz, tangent.xyz) == 0.0f)
+            tangent =
+                tangent_of(map_corners(maps + map + MAP_NORMAL, coordinates, vertex_count, corner),
+                           v1 - v0, v2 - v0);
+        normal = map_normal(texel, maps[map + MAP_NORMAL].scale, normal, tangent, front);
+        surface->normal = (float4)(normal, 0.0f);
+    }
+#endif
+    if (own.unlit != 0u)
+        own.emission.xyz *= color;
+    else
+        own.base_color.xyz *= color;
+    materials[own_materials + item] = own;
+    surface->shading = own_materials + item;
+#else
+    surface->shading = material;
+#endif
 }
 
 // surfaces[item], one item per work-item.
@@ -75,7 +184,7 @@ KERNEL void gbuffer_trace_rays(Tiles tiles, Camera camera, uint jitter, uint pix
     if (!item_in_image(tiles, item)) return;
     const Ray ray = primary_ray(tiles, item, camera, jitter, pixel_sample, seed);
     const Hit hit = closest_hit(BVH_ARGUMENTS, ray);
-    write_surface(surfaces + item, ray, hit.triangle, hit.t, MESH_ARGUMENTS);
+    write_surface(tiles, camera, surfaces, item, ray, hit.triangle, hit.t, MESH_ARGUMENTS);
 }
 
 // The same, 16 items (4 x 4 pixels) per work-item; for cameras whose rays have one origin.
@@ -98,7 +207,7 @@ KERNEL void gbuffer_trace_packets(Tiles tiles, Camera camera, uint jitter, uint 
     for (uint lane = 0u; lane < 16u; ++lane) {
         if (!item_in_image(tiles, first + lane)) continue;
         const Ray ray = {packet.origin, direction_of(&packet, lane), INFINITY};
-        write_surface(surfaces + first + lane, ray, (uint)INT_LANE(triangles, lane),
+        write_surface(tiles, camera, surfaces, first + lane, ray, (uint)INT_LANE(triangles, lane),
                       LANE(packet.end, lane), MESH_ARGUMENTS);
     }
 }

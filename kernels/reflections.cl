@@ -5,6 +5,7 @@
 // Techniques for Monte Carlo Rendering", 1995); see lobe_share() in lib/brdf.h.
 #include "lib/direct.h"
 #include "lib/random.h"
+#include "lib/textures.h"
 #include "lib/tiles.h"
 
 #if HAS_REFLECTIONS
@@ -36,13 +37,19 @@ static float3 sample_lobe(float alpha, float3 n, float3 wo, float2 u) {
     return normalize(h * (2.0f * dot(wo, h)) - wo);
 }
 
+#if HAS_TEXTURES
+#define MAP_PARAMETERS , TEXTURE_PARAMETERS
+#else
+#define MAP_PARAMETERS
+#endif
+
 // Adds to estimates[item].rgb, cd/m2. cell_areas[triangle]: see Scene.
 KERNEL void reflections_add(Tiles tiles, Camera camera, BVH_PARAMETERS,
                             __global const float* vertices, __global const uint* indices,
                             __global const uint* triangle_materials,
                             __global const Material* materials, __global const float* cell_areas,
                             __global const Surface* surfaces, uint pixel_sample, uint seed,
-                            __global float4* estimates) {
+                            __global float4* estimates MAP_PARAMETERS) {
     const uint item = get_global_id(0);
     if (!item_in_image(tiles, item) || surface_missed(surfaces + item)) return;
     const Receiver r = make_receiver(surfaces + item, materials, camera);
@@ -57,10 +64,18 @@ KERNEL void reflections_add(Tiles tiles, Camera camera, BVH_PARAMETERS,
     if (area == 0.0f) return;
     __global const uint* corner = indices + 3 * hit.triangle;
     const float3 v0 = vload3(corner[0], vertices);
-    const float3 face = cross(vload3(corner[1], vertices) - v0, vload3(corner[2], vertices) - v0);
+    const float3 edge1 = vload3(corner[1], vertices) - v0;
+    const float3 edge2 = vload3(corner[2], vertices) - v0;
+    const float3 face = cross(edge1, edge2);
     const float cosine = -dot(wi, normalize(face));
-    const float4 emission = materials[triangle_materials[hit.triangle]].emission;
+    float4 emission = materials[triangle_materials[hit.triangle]].emission;
     if (cosine < 0.0f && emission.w == 0.0f) return;
+#if HAS_TEXTURES
+    emission.xyz *= sample_map(TEXTURE_ARGUMENTS,
+                               MAP_KIND_COUNT * triangle_materials[hit.triangle] + MAP_EMISSION,
+                               corner, hit_weights(ray, v0, edge1, edge2), 0.0f)
+                        .xyz;
+#endif
     const float solid_angle = area * fabs(cosine) / (hit.t * hit.t);
     const Material m = r.material;
     const float n_in = dot(r.normal, wi);

@@ -14,7 +14,9 @@ Scene random_soup(std::size_t triangles) {
     std::uniform_real_distribution<float> unit(-1, 1);
     Scene scene;
     scene.file = "soup";
-    scene.materials.push_back({float4(0.5f, 0.5f, 0.5f, 0), float4(0), 1, 0, 0, 0});
+    scene.materials.push_back({});
+    scene.materials[0].base_color = float4(0.5f, 0.5f, 0.5f, 0);
+    scene.materials[0].roughness = 1;
     for (std::size_t t = 0; t < triangles; ++t) {
         const glm::vec3 centre(unit(engine), unit(engine), unit(engine));
         const float size = std::pow(10.0f, -2 + 1.5f * std::abs(unit(engine)));

@@ -323,11 +323,10 @@ TEST(gltf, what_is_not_rendered_is_warned_about) {
     file.document["images"] = {{{"uri", "missing.png"}}};
     file.document["textures"] = {{{"source", 0}}};
     file.document["materials"] = {
-        {{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}}, {"alphaMode", "BLEND"}}};
+        {{"extensions", {{"KHR_materials_specular", {{"specularTexture", {{"index", 0}}}}}}}}};
     file.document["skins"] = {{{"joints", {0}}}};
     file.document["animations"] = {{{"channels", json::array()}, {"samplers", json::array()}}};
     file.primitive()["targets"] = {{{"POSITION", 0}}};
-    file.primitive()["attributes"]["COLOR_0"] = 0;
     std::string all;
     const Scene scene = file.load();
     for (const std::string& warning : scene.warnings) {
@@ -335,10 +334,30 @@ TEST(gltf, what_is_not_rendered_is_warned_about) {
         EXPECT_EQ(warning.find('\n'), std::string::npos);
         all += warning + "\n";
     }
-    for (const char* word : {"textures", "alpha", "skins", "morph", "vertex colours", "animations",
-                             "KHR_materials_clearcoat"})
+    for (const char* word :
+         {"specular textures", "skins", "morph", "animations", "KHR_materials_clearcoat"})
         EXPECT_NE(all.find(word), std::string::npos) << word;
-    EXPECT_EQ(scene.warnings.size(), 7u) << all;
+    EXPECT_EQ(scene.warnings.size(), 5u) << all;
+}
+
+// F0 = ((ior - 1) / (ior + 1))^2, times the colour, at most 1; an unlit material shines alone.
+TEST(gltf, reflectance_and_unlit) {
+    GltfTest file;
+    json& material = file.document["materials"][0];
+    material["extensions"]["KHR_materials_ior"]["ior"] = 2;
+    material["extensions"]["KHR_materials_specular"]["specularColorFactor"] = {1, 0.5, 20};
+    EXPECT_EQ(file.load().warnings.size(), 0u);
+    expect_near(glm::vec3(file.load().materials[0].reflectance), {1 / 9.f, 1 / 18.f, 1});
+    material["extensions"]["KHR_materials_ior"]["ior"] = 0;
+    expect_near(glm::vec3(file.load().materials[0].reflectance), {1, 0.5f, 1});
+    material = {{"pbrMetallicRoughness", {{"baseColorFactor", {0.1, 0.2, 0.3, 1}}}},
+                {"extensions", {{"KHR_materials_unlit", json::object()}}}};
+    file.primitive()["material"] = 0;
+    Scene scene = file.load();
+    add_emitters(scene, 0);
+    expect_near(glm::vec3(scene.materials[0].emission), {0.1f, 0.2f, 0.3f});
+    expect_near(glm::vec3(scene.materials[0].base_color), glm::vec3(0));
+    EXPECT_TRUE(scene.lights.empty());
 }
 
 TEST(gltf, emitter_points_of_the_file) {

@@ -16,10 +16,34 @@ import struct
 import subprocess
 import sys
 import tempfile
+import zlib
 
 POSITIONS = struct.pack("<12f", 0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0)
 INDICES = struct.pack("<6H", 0, 1, 2, 2, 1, 3)
 DATA = POSITIONS + INDICES
+
+
+def png(width, height, rows):
+    """A PNG file of that header, RGB, whatever its rows hold."""
+    def chunk(kind, data):
+        return (struct.pack(">I", len(data)) + kind + data
+                + struct.pack(">I", zlib.crc32(kind + data)))
+    return (b"\x89PNG\r\n\x1a\n"
+            + chunk(b"IHDR", struct.pack(">IIBBBBB", width, height, 8, 2, 0, 0, 0))
+            + chunk(b"IDAT", zlib.compress(rows)) + chunk(b"IEND", b""))
+
+
+TEXTURE = png(2, 2, b"\0\xff\0\0\0\xff\0" * 2)
+# Images beside the scene.
+IMAGES = {
+    "texture.png": TEXTURE,
+    "cut off.png": TEXTURE[:45],
+    "empty.png": b"",
+    "text.png": b"This is no image.",
+    "rows missing.png": png(900, 900, b"\0\xff\0\0"),
+    "wide.png": png(60000, 2, b"\0\xff\0\0"),
+    "huge.png": png(16000, 16000, bytes(1000000)),
+}
 
 
 def valid():
@@ -54,12 +78,13 @@ def valid():
         "samplers": [{}],
         "images": [{"uri": "texture.png"}],
         "skins": [{"joints": [3]}],
-        "meshes": [{"primitives": [{"attributes": {"POSITION": 0, "NORMAL": 0}, "indices": 1,
+        "meshes": [{"primitives": [{"attributes": {"POSITION": 0, "NORMAL": 0, "TEXCOORD_0": 2}, "indices": 1,
                                     "material": 0, "mode": 4}]}],
         "accessors": [
             {"bufferView": 0, "byteOffset": 0, "componentType": 5126, "count": 4, "type": "VEC3",
              "min": [0, 0, 0], "max": [1, 1, 0]},
             {"bufferView": 1, "componentType": 5123, "count": 6, "type": "SCALAR"},
+            {"bufferView": 0, "componentType": 5126, "count": 4, "type": "VEC2"},
         ],
         "bufferViews": [{"buffer": 0, "byteOffset": 0, "byteLength": 48, "byteStride": 12},
                         {"buffer": 0, "byteOffset": 48, "byteLength": 12}],
@@ -111,6 +136,7 @@ LENS = ["cameras", 0, "perspective"]
 ORTHO = ["cameras", 1, "orthographic"]
 NAN = struct.pack("<f", float("nan"))
 INF = struct.pack("<f", float("inf"))
+INFINITIES = "data:application/octet-stream;base64," + base64.b64encode(8 * INF).decode()
 
 # name: (change, words that the message must hold)
 CHANGES = {
@@ -195,6 +221,59 @@ CHANGES = {
     "alpha mode": (put(MATERIAL + ["alphaMode"], "GLASS"), ["alphaMode", "GLASS"]),
     "texture beyond": (put(PBR + ["baseColorTexture", "index"], 1), ["baseColorTexture.index", "1"]),
     "texture source beyond": (put(["textures", 0, "source"], 7), ["textures[0].source", "7"]),
+    "texCoord beyond": (put(PBR + ["baseColorTexture", "texCoord"], 16),
+                        ["baseColorTexture.texCoord", "16"]),
+    "texCoord text": (put(PBR + ["baseColorTexture", "texCoord"], "0"), ["texCoord", '"0"']),
+    "texCoord missing": (put(PBR + ["baseColorTexture", "texCoord"], 1),
+                         ["meshes[0].primitives[0]", "material 0", "TEXCOORD_1"]),
+    "coordinates scalar": (put(PRIMITIVE + ["attributes", "TEXCOORD_0"], 1),
+                           ["attributes.TEXCOORD_0", "accessor 1", "VEC2"]),
+    "coordinates infinite": (lambda d: (put(PRIMITIVE + ["attributes", "TEXCOORD_0"], 3)(d),
+                                        d["accessors"].append(
+                                            {"bufferView": 2, "componentType": 5126, "count": 4,
+                                             "type": "VEC2"}),
+                                        d["bufferViews"].append({"buffer": 1, "byteLength": 32}),
+                                        d["buffers"].append({"byteLength": 32, "uri": INFINITIES})),
+                             ["attributes.TEXCOORD_0", "element 0", "finite"]),
+    "too few coordinates": (put(["accessors", 2, "count"], 3), ["TEXCOORD_0", "3", "4"]),
+    "colours of two": (put(PRIMITIVE + ["attributes", "COLOR_0"], 2),
+                       ["attributes.COLOR_0", "accessor 2", "VEC3 or VEC4"]),
+    "too few colours": (lambda d: (put(PRIMITIVE + ["attributes", "COLOR_0"], 3)(d),
+                                   d["accessors"].append({"bufferView": 0, "componentType": 5126,
+                                                          "count": 2, "type": "VEC3"})),
+                        ["attributes.COLOR_0", "2", "4"]),
+    "wrap mode": (put(["samplers", 0, "wrapS"], 5), ["samplers[0].wrapS", "5"]),
+    "magFilter": (put(["samplers", 0, "magFilter"], 9987), ["samplers[0].magFilter", "9987"]),
+    "minFilter": (put(["samplers", 0, "minFilter"], "LINEAR"), ["samplers[0].minFilter"]),
+    "transform of three": (put(PBR + ["baseColorTexture", "extensions"],
+                               {"KHR_texture_transform": {"scale": [1, 1, 1]}}),
+                           ["KHR_texture_transform.scale", "3"]),
+    "transform text": (put(PBR + ["baseColorTexture", "extensions"],
+                           {"KHR_texture_transform": {"rotation": "90"}}),
+                       ["KHR_texture_transform.rotation", '"90"']),
+    "webp beyond": (put(["textures", 0, "extensions"], {"EXT_texture_webp": {"source": 1}}),
+                    ["textures[0].extensions.EXT_texture_webp.source", "1"]),
+    "ior below 1": (put(MATERIAL + ["extensions", "KHR_materials_ior"], {"ior": 0.5}),
+                    ["KHR_materials_ior.ior", "0.5"]),
+    "specular colour negative": (put(MATERIAL + ["extensions", "KHR_materials_specular"],
+                                     {"specularColorFactor": [1, -1, 1]}),
+                                 ["specularColorFactor[1]", "-1"]),
+    "image missing": (put(["images", 0, "uri"], "none.png"), ["images[0].uri", "none.png"]),
+    "image a folder": (put(["images", 0, "uri"], "."), ["images[0].uri"]),
+    "image empty": (put(["images", 0, "uri"], "empty.png"), ["images[0]", "0 bytes"]),
+    "image text": (put(["images", 0, "uri"], "text.png"), ["images[0]", "no PNG"]),
+    "image cut off": (put(["images", 0, "uri"], "cut%20off.png"), ["images[0]", "decoded"]),
+    "image rows missing": (put(["images", 0, "uri"], "rows missing.png"),
+                           ["images[0]", "decoded"]),
+    "image too wide": (put(["images", 0, "uri"], "wide.png"), ["images[0]", "60000", "16384"]),
+    "image too large": (put(["images", 0, "uri"], "huge.png"), ["images[0]", "16000", "67108864"]),
+    "image base64": (put(["images", 0, "uri"], "data:image/webp;base64,%%%"),
+                     ["images[0]", "base64"]),
+    "image no base64": (put(["images", 0, "uri"], "data:image/png,abc"), ["images[0].uri", "base64"]),
+    "image in text broken": (put(["images", 0, "uri"], "data:image/png;base64,iVBORw0KGgo="),
+                             ["images[0]", "decoded"]),
+    "image of a view": (put(["images", 0], {"bufferView": 0}), ["images[0]", "48 bytes"]),
+    "image without data": (put(["images", 0], {}), ["images[0]"]),
     "image outside": (put(["images", 0, "uri"], "../../secret.png"), ["images[0].uri", "outside"]),
     "meshes of numbers": (put(["meshes"], [1]), ["meshes[0]", "not an object"]),
     "mesh without primitives": (put(["meshes", 0, "primitives"], []), ["meshes[0].primitives"]),
@@ -213,7 +292,7 @@ CHANGES = {
     "corners no triangles": (put(INDEX + ["count"], 5), ["5 corners"]),
     "index beyond the vertices": (patched(48 + 4, struct.pack("<H", 4)), ["element 2", "4"]),
     "normals too few": (lambda d: (d["accessors"].append(dict(d["accessors"][0], count=3)),
-                                   d["meshes"][0]["primitives"][0]["attributes"].update(NORMAL=2)),
+                                   d["meshes"][0]["primitives"][0]["attributes"].update(NORMAL=3)),
                         ["NORMAL", "3 normals for 4"]),
     "position not a number": (patched(4, NAN), ["POSITION", "element 0"]),
     "position infinite": (patched(24, INF), ["POSITION", "element 2"]),
@@ -345,6 +424,8 @@ def main():
     inside = folder / "scenes"  # so that ../data.bin exists and is still refused
     inside.mkdir(parents=True, exist_ok=True)
     (folder / "data.bin").write_bytes(DATA)
+    for name, data in IMAGES.items():
+        (inside / name).write_bytes(data)
     cases = {}
     for name, (change, words) in CHANGES.items():
         document = valid()

@@ -16,7 +16,9 @@ constexpr float infinity = std::numeric_limits<float>::infinity();
 Scene scene_of(const std::vector<glm::vec3>& corners) {
     Scene scene;
     scene.file = "soup";
-    scene.materials.push_back({float4(0.5f, 0.5f, 0.5f, 0), float4(0), 1, 0, 0, 0});
+    scene.materials.push_back({});
+    scene.materials[0].base_color = float4(0.5f, 0.5f, 0.5f, 0);
+    scene.materials[0].roughness = 1;
     scene.vertices = corners;
     for (std::size_t i = 0; i < corners.size(); ++i)
         scene.indices.push_back(static_cast<std::uint32_t>(i));

@@ -137,6 +137,10 @@ std::string reference_name(const Renderer& renderer, const Setting& setting) {
     hash.add(bytes_of(scene.vertices)).add(bytes_of(scene.vertex_normals));
     hash.add(bytes_of(scene.indices)).add(bytes_of(scene.triangle_materials));
     hash.add(bytes_of(scene.materials)).add(bytes_of(scene.lights)).add(bytes_of(scene.cell_areas));
+    hash.add(bytes_of(scene.maps)).add(bytes_of(scene.textures)).add(bytes_of(scene.texels));
+    for (const auto& set : scene.coordinates) hash.add(bytes_of(set));
+    hash.add(bytes_of(scene.colors)).add(bytes_of(scene.tangents));
+    hash.add(bytes_of(scene.alpha_of)).add(bytes_of(scene.alpha_triangles));
     hash.add(std::as_bytes(std::span(&renderer.camera(), 1)));
     hash.add(renderer.width()).add(renderer.height());
     hash.add(setting.sampler).add(setting.light_samples).add(setting.spp);

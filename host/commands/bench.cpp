@@ -144,8 +144,9 @@ void bench_traversal(const LoadedScene& loaded, Device& device, const BenchArgum
         arguments.scene.threads ? arguments.scene.threads : std::thread::hardware_concurrency();
     std::optional<EmbreeScene> embree;
     const WideBvh bvh = measure_builds(loaded, arguments, device, threads, embree, out);
-    const DeviceScene scene = upload_scene(device, loaded.scene, bvh, loaded.camera);
     const Tiles tiles = all_tiles(loaded.width, loaded.height, 32);
+    const DeviceScene scene =
+        upload_scene(device, loaded.scene, bvh, loaded.camera, nullptr, item_count(tiles));
     Surface missed{};
     missed.position.w = -1;  // where a tile reaches beyond the image
     Buffer<Surface> surfaces = device.upload(std::vector<Surface>(item_count(tiles), missed));

@@ -59,16 +59,16 @@ struct Inspected {
 };
 
 // What a pixel's surface emits to the camera.
-glm::vec3 emission_of(const Scene& scene, const PixelReport& report) {
+glm::vec3 emission_of(const PixelReport& report) {
     if (!report.hit()) return glm::vec3(0);
-    const float4& emission = scene.materials[report.surface.material].emission;
+    const float4& emission = report.material.emission;
     return report.surface.front || emission.w != 0 ? glm::vec3(emission) : glm::vec3(0);
 }
 
 Inspected rank(const LoadedScene& loaded, const LightTree& tree, const PixelReport& report) {
     Inspected out{loaded, tree, report, report.nodes, 0, report.draws(), 0, {}, {}};
     out.luminance = reference::luminance(report.radiance);
-    out.emitted = emission_of(loaded.scene, report);
+    out.emitted = emission_of(report);
     std::ranges::stable_sort(out.ranked, std::greater(), [&](const InspectedNode& n) {
         return std::max({out.light_share(n), out.draw_share(n), n.noise});
     });
@@ -147,8 +147,9 @@ std::vector<std::string> explain(const Inspected& in) {
     return out;
 }
 
-std::string material_text(const Scene& scene, uint index) {
-    const Material& m = scene.materials[index];
+std::string material_text(const Scene& scene, const PixelReport& report) {
+    const Material& m = report.material;
+    const uint index = report.surface.material;
     const std::string& name = scene.material_names[index];
     std::string text =
         name.empty() ? fmt::format("material {}", index) : fmt::format("material '{}'", name);
@@ -170,7 +171,7 @@ void print(const Inspected& in, std::size_t rows) {
     fmt::print("surface: {}, normal {}, {:.2f} m from the camera\n",
                show(glm::vec3(r.surface.position)), show(glm::vec3(r.surface.normal)),
                r.surface.position.w);
-    fmt::print("         {}\n", material_text(scene, r.surface.material));
+    fmt::print("         {}\n", material_text(scene, r));
     fmt::print("lights:  of {}, {} face it, and it sees {} of those\n", scene.lights.size(), facing,
                seen);
     fmt::print(

@@ -25,7 +25,7 @@ void position(const BatchFacts& f, std::size_t item, float* out) {
 }
 
 void albedo(const BatchFacts& f, std::size_t item, float* out) {
-    if (hit(f, item)) copy(f.scene->materials[f.surfaces[item].material].base_color, out);
+    if (hit(f, item)) copy(f.materials[f.surfaces[item].shading].base_color, out);
 }
 
 void cluster(const BatchFacts& f, std::size_t item, float* out) {

@@ -13,9 +13,9 @@ namespace manylight {
 
 /// What a batch of tiles knows of its pixels, on the host.
 struct BatchFacts {
-    const Scene* scene = nullptr;
-    std::vector<Surface> surfaces;  // [item], at the pixels' centres
-    std::vector<uint> rows;         // [item] region; empty where nothing was clustered, as below
+    std::vector<Material> materials;  // by Surface::shading
+    std::vector<Surface> surfaces;    // [item], at the pixels' centres
+    std::vector<uint> rows;           // [item] region; empty where nothing was clustered, as below
     std::vector<uint> representatives;  // [region] item
     std::vector<RowSum> totals;         // [region]
     std::vector<std::size_t> numbers;   // [region] number of the leaf in the whole image

@@ -17,6 +17,12 @@ namespace {
 // The first samples, whose error says how many more are needed.
 constexpr uint fewest_samples = 4;
 
+// Whether a ray may find another surface than the same ray of another sample.
+bool passes_by_chance(const Scene& scene) {
+    return std::ranges::any_of(scene.alpha_triangles,
+                               [](const AlphaTriangle& t) { return t.second.z < 0; });
+}
+
 // Adds the time until its end to a total, compiling apart.
 class Stopwatch {
   public:
@@ -41,9 +47,10 @@ struct Frame::Stages {
     std::optional<ReflectionStage> reflections;
     AccumulateStage accumulate;
     std::optional<Clustering> clustering;
-    Arguments tables;          // what the sampler draws from
-    Buffer<Surface> centres;   // of the pixels, where the plan says so
-    Buffer<Surface> surfaces;  // of the pixel samples
+    Arguments tables;               // what the sampler draws from
+    Buffer<Surface> centres;        // of the pixels, where the plan says so
+    std::size_t centres_first = 0;  // of their points (see GBufferStage)
+    Buffer<Surface> surfaces;       // of the pixel samples
     Estimates estimates;
     ImageSum image;
 
@@ -100,7 +107,9 @@ void Frame::prepare() {
         Stopwatch watch(result_.prepare_seconds, device_);
         tree_ = build_light_tree(scene_.lights);
     }
-    DeviceScene uploaded = upload_scene(device_, scene_, bvh_, camera_, tree ? &tree_ : nullptr);
+    const bool two_surfaces = plan_.centres && options_.jitters();
+    DeviceScene uploaded = upload_scene(device_, scene_, bvh_, camera_, tree ? &tree_ : nullptr,
+                                        two_surfaces ? 2 * items : items);
     if (options_.hide_emitters) uploaded.emission["HAS_EMISSION"] = 0;
     if (!options_.reflections) uploaded.shading["HAS_REFLECTIONS"] = 0;
     stages_ = std::make_shared<Stages>(device_, uploaded, pixels, options_.estimates_error());
@@ -112,8 +121,8 @@ void Frame::prepare() {
         s.samples.emplace(device_, s.scene, sampler_.kernel_file, items);
     if (uploaded.shading.at("HAS_REFLECTIONS") != 0) s.reflections.emplace(device_, s.scene);
     s.surfaces = device_.allocate<Surface>(items);
-    if (plan_.centres)
-        s.centres = options_.jitters() ? device_.allocate<Surface>(items) : s.surfaces;
+    if (plan_.centres) s.centres = two_surfaces ? device_.allocate<Surface>(items) : s.surfaces;
+    s.centres_first = two_surfaces ? items : 0;
     s.estimates = {allocate_zeros(items), allocate_zeros(items)};
     if (plan_.clusters) {
         s.clustering.emplace(device_, s.scene, options_.clusters, plan_.tiles_per_batch);
@@ -196,7 +205,7 @@ void Frame::visit_all(uint end, double shown, double share, Progress& progress) 
         visit.fresh = done_[i] == 0 || plan_.batches > 1;
         if (plan_.centres && visit.fresh) {
             Stopwatch watch(result_.prepare_seconds, device_);
-            stages_->gbuffer.trace(visit.batch, {}, stages_->centres);
+            stages_->gbuffer.trace(visit.batch, {}, stages_->centres, stages_->centres_first);
             if (options_.jitters()) result_.primary_rays += pixel_count(visit.batch);
             if (plan_.clusters) cluster(visit, progress);
             if (done_[i] == 0) keep_aovs(visit.batch);
@@ -245,7 +254,7 @@ void Frame::cluster(const Visit& visit, Progress& progress) {
 void Frame::keep_aovs(const Tiles& batch) {
     if (result_.aovs.empty()) return;
     BatchFacts facts;
-    facts.scene = &scene_;
+    facts.materials = stages_->scene.materials.download();
     facts.surfaces = stages_->centres.download(0, item_count(batch));
     if (plan_.clusters) {
         facts.rows = stages_->clustering->item_rows();
@@ -280,7 +289,8 @@ void Frame::sample(const Visit& visit, Progress& progress) {
         const double expected = s.adaptive ? 0 : seconds_per_sample * count;
         if (may_stop && seconds_left() < expected / 2) break;
         const PixelSample sample{i, options_.seed, options_.jitters()};
-        const bool at_hand = !options_.jitters() && (i > first || plan_.centres);
+        const bool alike = !options_.jitters() && !passes_by_chance(scene_);
+        const bool at_hand = alike && (i > first || plan_.centres);
         if (!at_hand) s.gbuffer.trace(batch, position_of(sample), s.surfaces);
         if (!at_hand || i == 0) result_.primary_rays += pixel_count(batch);
         const auto add = [&](const std::optional<Pass>& pass) {

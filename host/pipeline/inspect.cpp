@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <optional>
 
 #include "reference/adaptive.hpp"
 #include "reference/gbuffer.hpp"
@@ -142,16 +143,22 @@ struct Group {
     std::size_t cell;  // of the tile
 };
 
-Group find_group(const Scene& scene, const reference::Tracer& tracer, const Camera& camera,
-                 const Tiles& tiles, glm::uvec2 pixel, const TileKnowledge& knowledge) {
+// `varied`: gets the pixels' own materials, if there are any.
+Group find_group(const Scene& scene, std::optional<Scene>& varied, const reference::Tracer& tracer,
+                 const Camera& camera, const Tiles& tiles, glm::uvec2 pixel,
+                 const TileKnowledge& knowledge) {
     const std::size_t item = reference::item_of(tiles, pixel.x, pixel.y);
     Group out{std::vector<Surface>(16), {}, item / 16 % 16, item / 16 % CELLS_PER_TILE};
     for (std::size_t cell = 0; cell < 16; ++cell) {
         const glm::uvec2 at = item_pixel(tiles, item / 256 * 256 + 16 * cell + item % 16);
         Surface& surface = out.surfaces[cell];
         surface.position.w = -1;
-        if (at.x < tiles.width && at.y < tiles.height)
-            surface = reference::gbuffer(scene, tracer, camera, tiles, at.x, at.y, false, 0, 0);
+        if (at.x < tiles.width && at.y < tiles.height) {
+            const reference::Ray ray = reference::primary_ray(camera, tiles, glm::dvec2(at) + 0.5);
+            const auto hit = tracer.closest_hit(ray);
+            surface = reference::surface_at(scene, ray, hit);
+            if (varied) reference::own_material(*varied, ray, hit, surface);
+        }
         reference::DrawnPixel& drawn = out.pixels.emplace_back();
         drawn.surface = surface.position.w >= 0 ? &surface : nullptr;
         drawn.starts = {0, 0.5};
@@ -169,15 +176,18 @@ double PixelReport::draws() const {
     return sum;
 }
 
-PixelReport inspect_pixel(const Scene& scene, const LightTree& tree, const Camera& camera,
+PixelReport inspect_pixel(const Scene& plain, const LightTree& tree, const Camera& camera,
                           const Tiles& tiles, glm::uvec2 pixel, const TileKnowledge& knowledge) {
+    std::optional<Scene> varied;
+    const Scene& scene = plain.varies_materials() ? varied.emplace(plain) : plain;
     const reference::Tracer tracer(scene);
-    const Group group = find_group(scene, tracer, camera, tiles, pixel, knowledge);
+    const Group group = find_group(scene, varied, tracer, camera, tiles, pixel, knowledge);
     PixelReport out;
     out.pixel = pixel;
     out.tile = pixel.y / tiles.size * tiles.columns + pixel.x / tiles.size;
     out.surface = group.surfaces[group.own];
     if (!out.hit()) return out;
+    out.material = scene.materials[out.surface.shading];
     out.cut_nodes = static_cast<uint>(knowledge.cut.size());
     for (const uint node : knowledge.cut) out.cut_lights += tree.nodes[node].count == 1;
 

@@ -21,9 +21,10 @@ struct InspectedNode {
 
 /// A pixel's centre.
 struct PixelReport {
-    glm::uvec2 pixel;  // from the top left
-    uint tile;         // of ADAPTIVE_TILE^2 pixels, in row order
-    Surface surface;   // position.w below 0: nothing is hit, and all else is empty
+    glm::uvec2 pixel;     // from the top left
+    uint tile;            // of ADAPTIVE_TILE^2 pixels, in row order
+    Surface surface;      // position.w below 0: nothing is hit, and all else is empty
+    Material material{};  // of the point, textures included
     uint cut_nodes = 0;
     uint cut_lights = 0;               // nodes of the cut that are one light
     uint area_points = 0;              // of each light with area

@@ -31,13 +31,31 @@ void check_aovs(const RenderOptions& options, bool clusters) {
                              options.sampler);
 }
 
+std::size_t coordinate_bytes(const Scene& scene) {
+    std::size_t bytes = 0;
+    for (const auto& set : scene.coordinates) bytes += bytes_of(set);
+    return bytes;
+}
+
+// Of textures and what belongs to them.
+std::size_t texture_bytes(const Scene& scene) {
+    return bytes_of(scene.texels) + bytes_of(scene.textures) + bytes_of(scene.maps) +
+           bytes_of(scene.colors) + bytes_of(scene.tangents) + bytes_of(scene.alpha_of) +
+           bytes_of(scene.alpha_triangles) + coordinate_bytes(scene);
+}
+
 // Throws unless the device can hold each of the scene's and the image's buffers.
 void check_buffers(const DeviceInfo& device, const Scene& scene, const WideBvh& bvh,
                    std::size_t image) {
     const std::pair<const char*, std::size_t> buffers[] = {
-        {"BVH nodes", bytes_of(bvh.nodes)},     {"triangles", bytes_of(bvh.blocks)},
-        {"vertices", bytes_of(scene.vertices)}, {"indices", bytes_of(scene.indices)},
-        {"lights", bytes_of(scene.lights)},     {"image", image}};
+        {"BVH nodes", bytes_of(bvh.nodes)},
+        {"triangles", bytes_of(bvh.blocks)},
+        {"vertices", bytes_of(scene.vertices)},
+        {"indices", bytes_of(scene.indices)},
+        {"lights", bytes_of(scene.lights)},
+        {"textures", bytes_of(scene.texels)},
+        {"texture coordinates", coordinate_bytes(scene)},
+        {"image", image}};
     for (const auto& [name, bytes] : buffers)
         if (bytes > device.max_allocation)
             throw InputError("{}: its {} need {}, and {} allows {} at most in a buffer", scene.file,
@@ -77,7 +95,7 @@ Plan make_plan(const DeviceInfo& device, const Scene& scene, const WideBvh& bvh,
     plan.scene_bytes = bytes_of(bvh.nodes) + bytes_of(bvh.blocks) + bytes_of(scene.vertices) +
                        bytes_of(scene.vertex_normals) + bytes_of(scene.indices) +
                        bytes_of(scene.triangle_materials) + bytes_of(scene.materials) +
-                       bytes_of(scene.lights) + bytes_of(scene.cell_areas);
+                       bytes_of(scene.lights) + bytes_of(scene.cell_areas) + texture_bytes(scene);
     if (sampler.uses_tree()) plan.scene_bytes += 2 * sizeof(LightNode) * lights;
     plan.image_bytes = std::size_t{options.width} * options.height *
                        ImageSum::pixel_bytes(options.estimates_error());
@@ -85,8 +103,10 @@ Plan make_plan(const DeviceInfo& device, const Scene& scene, const WideBvh& bvh,
 
     const bool two_surfaces = plan.centres && options.jitters();
     const bool cuts = sampler.table == Table::cuts;
+    const std::size_t surface_bytes =
+        sizeof(Surface) + (scene.varies_materials() ? sizeof(Material) : 0);
     std::size_t tile_bytes =
-        tile_items * (sizeof(Surface) * (two_surfaces ? 2 : 1) + 2 * sizeof(float4));
+        tile_items * (surface_bytes * (two_surfaces ? 2 : 1) + 2 * sizeof(float4));
     tile_bytes += cuts ? Adaptive::tile_bytes() : tile_items * SampleStage::item_bytes();
     std::size_t tile_matrix = 0;
     std::size_t ray_bytes = cuts ? Adaptive::fixed_bytes(tiles.count, options.most_samples()) : 0;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <optional>
 #include <unordered_map>
 
 #include "reference/gbuffer.hpp"
@@ -39,11 +40,16 @@ std::vector<glm::dvec2> stratified_points(unsigned width, unsigned height, uint 
 class Points {
   public:
     Points(const Scene& scene, const Camera& camera, unsigned width, unsigned height, uint seed)
-        : scene_(scene), camera_(camera), tracer_(scene), seed_(seed) {
+        : scene_(scene.varies_materials() ? varied_.emplace(scene) : scene),
+          camera_(camera),
+          tracer_(scene_),
+          seed_(seed) {
         const Tiles tiles = all_tiles(width, height, 32);
         for (const glm::dvec2& at : stratified_points(width, height, seed)) {
             const reference::Ray ray = reference::primary_ray(camera, tiles, at);
-            surfaces_.push_back(reference::surface_at(scene, ray, tracer_.closest_hit(ray)));
+            const auto hit = tracer_.closest_hit(ray);
+            surfaces_.push_back(reference::surface_at(scene_, ray, hit));
+            if (varied_) reference::own_material(*varied_, ray, hit, surfaces_.back());
         }
     }
 
@@ -59,14 +65,18 @@ class Points {
     // Luminance that a point of a light gives at point p of the image, cd/m2.
     [[nodiscard]] double luminance(std::size_t p, std::size_t light, const glm::dvec2& u) {
         const Surface& s = surfaces_[p];
-        const reference::Unshadowed term = reference::unshadowed(s, scene_.materials[s.material],
-                                                                 camera_, scene_.lights[light], u);
+        const reference::Unshadowed term =
+            reference::unshadowed(s, scene_.materials[s.shading], camera_, scene_.lights[light], u);
         if (term.value == glm::dvec3(0)) return 0;
         ++rays_;
         return tracer_.occluded(term.shadow) ? 0 : reference::luminance(term.value);
     }
 
+    // With the points' own materials.
+    [[nodiscard]] const Scene& scene() const { return scene_; }
+
   private:
+    std::optional<Scene> varied_;  // a copy, to which the points' materials are added
     const Scene& scene_;
     const Camera& camera_;
     reference::Tracer tracer_;
@@ -93,7 +103,7 @@ std::pair<std::vector<double>, std::unordered_map<uint, double>> draw(Points& po
         for (uint i = 0; i < samples; ++i) {
             const auto bits = points.random(p, i);
             const reference::Choice choice = reference::choose_lighttree(
-                tables, {scene, points.camera(), points.surface(p)},
+                tables, {points.scene(), points.camera(), points.surface(p)},
                 {p, i, samples, bits, static_cast<uint>(scene.lights.size())});
             if (choice.weight == 0) continue;
             const double value = choice.weight * points.luminance(p, choice.light, on_light(bits));

@@ -11,7 +11,7 @@ namespace manylight::reference {
                                                    const Scene& scene) {
     glm::dvec4 value(estimate);
     if (surface.position.w < 0) return value;
-    const float4& emission = scene.materials[surface.material].emission;
+    const float4& emission = scene.materials[surface.shading].emission;
     if (surface.front || emission.w != 0) value += glm::dvec4(glm::vec3(emission), 0);
     return value;
 }

@@ -35,8 +35,10 @@ glm::dvec3 widened_brdf(const Material& m, const glm::dvec3& n, const glm::dvec3
     const auto smith = [a2](double c) { return c + std::sqrt(a2 + (1 - a2) * c * c); };
     const double lobe = a2 / (glm::pi<double>() * d * d * smith(n_l) * smith(n_v));
     const double schlick = std::pow(std::max(1 - std::abs(glm::dot(wo, h)), 0.0), 5);
-    const double fresnel = m.specular * (0.04 + 0.96 * schlick);
-    const glm::dvec3 dielectric = glm::mix(base / glm::pi<double>(), glm::dvec3(lobe), fresnel);
+    const glm::dvec3 f0(m.reflectance);
+    const glm::dvec3 fresnel = double{m.specular} * (f0 + (1.0 - f0) * schlick);
+    const double most = std::max({fresnel.r, fresnel.g, fresnel.b});
+    const glm::dvec3 dielectric = (1 - most) * base / glm::pi<double>() + lobe * fresnel;
     const glm::dvec3 metal = lobe * (base + (1.0 - base) * schlick);
     return glm::mix(dielectric, metal, double{m.base_color.w});
 }
@@ -157,7 +159,7 @@ TileCut make_cut(const LightTree& tree, const Scene& scene, const Tracer& tracer
             const Surface& s = *representatives[(i + bits % count) % count];
             const Light& light = tree.lights[tree.nodes[at].first];
             const Unshadowed term =
-                unshadowed(s, scene.materials[s.material], camera, light, centroid(light));
+                unshadowed(s, scene.materials[s.shading], camera, light, centroid(light));
             if (term.value == glm::dvec3(0)) continue;
             rays.traced += 1;
             rays.passed += tracer.occluded(term.shadow) ? 0 : 1;

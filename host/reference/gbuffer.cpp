@@ -2,6 +2,7 @@
 #include "reference/gbuffer.hpp"
 
 #include "reference/random.hpp"
+#include "reference/textures.hpp"
 
 namespace manylight::reference {
 
@@ -18,8 +19,20 @@ Ray primary_ray(const Camera& camera, const Tiles& tiles, const glm::dvec2& poin
     const glm::dvec3 offset = sx * glm::dvec3(camera.right) + sy * glm::dvec3(camera.up);
     const glm::dvec3 origin(camera.origin);
     const glm::dvec3 forward(camera.forward);
-    if (camera.forward.w != 0) return {origin + offset, forward};
-    return {origin, glm::normalize(forward + offset)};
+    const glm::dvec3 changes[] = {2.0 / tiles.width * glm::dvec3(camera.right),
+                                  -2.0 / tiles.height * glm::dvec3(camera.up)};
+    Ray ray{origin, forward};
+    if (camera.forward.w != 0) {
+        ray.origin += offset;
+        for (int k = 0; k < 2; ++k) ray.origin_change[k] = changes[k];
+        return ray;
+    }
+    const double length = glm::length(forward + offset);
+    ray.direction = (forward + offset) / length;
+    for (int k = 0; k < 2; ++k)
+        ray.direction_change[k] =
+            (changes[k] - glm::dot(changes[k], ray.direction) * ray.direction) / length;
+    return ray;
 }
 
 Surface surface_at(const Scene& scene, const Ray& ray, const std::optional<Hit>& hit) {
@@ -42,6 +55,7 @@ Surface surface_at(const Scene& scene, const Ray& ray, const std::optional<Hit>&
     if (!front) geometric = -geometric;
     glm::dvec3 normal = smooth == glm::dvec3(0) ? geometric : glm::normalize(smooth);
     if (glm::dot(normal, geometric) < 0) normal = -normal;
+    normal = normal_at(scene, ray, *hit, normal);
     const glm::dvec3 position = v[0] + hit->u * (v[1] - v[0]) + hit->v * (v[2] - v[0]);
     surface.position = float4(glm::vec3(position), static_cast<float>(hit->t));
     surface.normal = float4(glm::vec3(normal), 0);
@@ -49,8 +63,15 @@ Surface surface_at(const Scene& scene, const Ray& ray, const std::optional<Hit>&
                                static_cast<float>(static_cast<double>(OFFSET_SCALE) * extent));
     surface.triangle = hit->triangle;
     surface.material = scene.triangle_materials[hit->triangle];
+    surface.shading = surface.material;
     surface.front = front;
     return surface;
+}
+
+void own_material(Scene& scene, const Ray& ray, const std::optional<Hit>& hit, Surface& surface) {
+    if (!hit) return;
+    surface.shading = static_cast<uint>(scene.materials.size());
+    scene.materials.push_back(material_at(scene, ray, *hit));
 }
 
 Surface gbuffer(const Scene& scene, const Tracer& tracer, const Camera& camera, const Tiles& tiles,

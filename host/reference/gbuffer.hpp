@@ -13,6 +13,9 @@ namespace manylight::reference {
 /// The surface at a hit of a ray, in double precision rounded once.
 [[nodiscard]] Surface surface_at(const Scene& scene, const Ray& ray, const std::optional<Hit>& hit);
 
+/// Gives the surface at a hit of a ray the material that it has of its own, behind the scene's.
+void own_material(Scene& scene, const Ray& ray, const std::optional<Hit>& hit, Surface& surface);
+
 /// Stage gbuffer for one pixel; `jitter` false: through its centre.
 [[nodiscard]] Surface gbuffer(const Scene& scene, const Tracer& tracer, const Camera& camera,
                               const Tiles& tiles, uint x, uint y, bool jitter, uint pixel_sample,

@@ -5,6 +5,7 @@
 #include <glm/gtc/constants.hpp>
 
 #include "reference/random.hpp"
+#include "reference/textures.hpp"
 
 namespace manylight::reference {
 namespace {
@@ -25,10 +26,10 @@ glm::dvec3 reflected(const Scene& scene, const Camera& camera, const Surface& su
         v[k] = scene.vertices[scene.indices[3 * std::size_t{hit->triangle} + k]];
     const glm::dvec3 face = glm::normalize(glm::cross(v[1] - v[0], v[2] - v[0]));
     const double emitted = -glm::dot(face, ray.direction);
-    const float4& emission = scene.materials[scene.triangle_materials[hit->triangle]].emission;
+    const float4 emission = material_at(scene, {ray.origin, ray.direction}, *hit).emission;
     if (emitted < 0 && emission.w == 0) return glm::dvec3(0);
     const double solid_angle = area * std::abs(emitted) / (hit->t * hit->t);
-    const Material& material = scene.materials[surface.material];
+    const Material& material = scene.materials[surface.shading];
     const Brdf f = split_brdf(material, normal, ray.direction,
                               direction_to_camera(camera, glm::dvec3(surface.position)));
     return f.specular * cosine * (1 - light_share(f.density, solid_angle)) / f.density *
@@ -66,7 +67,7 @@ Reflection reflection(const Scene& scene, const Tracer& tracer, const Camera& ca
                       bool judge) {
     Reflection out;
     if (surface.position.w < 0) return out;
-    const Material& material = scene.materials[surface.material];
+    const Material& material = scene.materials[surface.shading];
     const glm::dvec3 position(surface.position);
     if (!reflects(surface, material, camera)) return out;
     Ray ray;

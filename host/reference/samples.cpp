@@ -131,7 +131,7 @@ Estimate estimate(const Scene& scene, const Tracer& tracer, const Camera& camera
                   bool judge) {
     Estimate out;
     if (surface.position.w < 0) return out;
-    const Material& material = scene.materials[surface.material];
+    const Material& material = scene.materials[surface.shading];
     const auto lights = static_cast<uint>(scene.lights.size());
     for (uint sample = 0; sample < sample_count; ++sample) {
         const auto bits = random_bits(pixel, pixel_sample, sample, seed);

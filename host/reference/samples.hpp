@@ -31,7 +31,7 @@ struct Point {
     const Scene& scene;
     const Camera& camera;
     const Surface& surface;
-    [[nodiscard]] const Material& material() const { return scene.materials[surface.material]; }
+    [[nodiscard]] const Material& material() const { return scene.materials[surface.shading]; }
 };
 
 /// Which light sample is to be drawn, from 128 random bits.

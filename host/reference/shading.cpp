@@ -168,12 +168,13 @@ Brdf split_brdf(const Material& material, const glm::dvec3& normal, const glm::d
     const double schlick = std::pow(std::max(1 - std::abs(glm::dot(wo, h)), 0.0), 5);
     const glm::dvec3 base(material.base_color);
     const double f90 = material.specular;
-    const double f0 = 0.04 * f90;
-    const double dielectric_fresnel = f0 + (f90 - f0) * schlick;
+    const glm::dvec3 f0 = f90 * glm::dvec3(material.reflectance);
+    const glm::dvec3 dielectric_fresnel = f0 + (f90 - f0) * schlick;
+    const double most =
+        std::max({dielectric_fresnel.r, dielectric_fresnel.g, dielectric_fresnel.b});
     const double metallic = material.base_color.w;
-    f.diffuse = (1 - metallic) * (1 - dielectric_fresnel) * base / pi;
-    f.specular =
-        lobe * glm::mix(glm::dvec3(dielectric_fresnel), base + (1.0 - base) * schlick, metallic);
+    f.diffuse = (1 - metallic) * (1 - most) * base / pi;
+    f.specular = lobe * glm::mix(dielectric_fresnel, base + (1.0 - base) * schlick, metallic);
     return f;
 }
 

@@ -2,7 +2,12 @@
 #include "reference/tracing.hpp"
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <numeric>
+
+#include "reference/random.hpp"
+#include "reference/textures.hpp"
 
 namespace manylight::reference {
 namespace {
@@ -76,7 +81,22 @@ void Tracer::test(uint triangle, const Ray& ray, std::optional<Hit>& best) const
     const double v = glm::dot(ray.direction, q) / determinant;
     if (v < 0 || u + v > 1) return;
     const double t = glm::dot(e2, q) / determinant;
-    if (t > 0 && t < (best ? best->t : ray.end)) best = Hit{triangle, t, u, v};
+    const Hit hit{triangle, t, u, v};
+    if (t > 0 && t < (best ? best->t : ray.end) && is_there(ray, hit)) best = hit;
+}
+
+// What is partly there is so by chance, but for one ray always alike.
+bool Tracer::is_there(const Ray& ray, const Hit& hit) const {
+    const float cutoff = scene_.materials[scene_.triangle_materials[hit.triangle]].cutoff;
+    if (cutoff == 0) return true;
+    const double alpha = alpha_at(scene_, hit);
+    if (cutoff > 0) return alpha >= cutoff;
+    std::array<uint, 4> bits = {hit.triangle, 0, 0, 0};
+    for (const double part : {ray.origin.x, ray.origin.y, ray.origin.z, ray.direction.x,
+                              ray.direction.y, ray.direction.z})
+        bits =
+            random_bits(bits[0], std::bit_cast<uint>(static_cast<float>(part)), bits[2], bits[3]);
+    return unit_fraction(bits[0]) < alpha;
 }
 
 std::optional<Hit> Tracer::closest_hit(const Ray& ray) const {

@@ -15,6 +15,9 @@ struct Ray {
     glm::dvec3 origin;
     glm::dvec3 direction;
     double end = std::numeric_limits<double>::infinity();
+    // From a pixel to its right and to its lower neighbour, where the ray is a pixel's.
+    glm::dvec3 origin_change[2] = {glm::dvec3(0), glm::dvec3(0)};
+    glm::dvec3 direction_change[2] = {glm::dvec3(0), glm::dvec3(0)};
 };
 
 struct Hit {
@@ -43,6 +46,7 @@ class Tracer {
     [[nodiscard]] bool occlusion_is_borderline(const Ray& ray, double distance) const;
 
   private:
+    [[nodiscard]] bool is_there(const Ray& ray, const Hit& hit) const;
     struct Node {
         glm::dvec3 lower, upper;
         uint begin, end;            // of order_

@@ -30,6 +30,7 @@ struct Shape {
     float offset;             // as an emitter's
     std::size_t emitter;      // of the shape's radiance
     std::size_t second;       // the other of a parallelogram's emitters
+    bool textured = false;
 };
 
 // An edge of an emitter, as it winds; a neighbour that faces the same way has its reverse.
@@ -145,7 +146,8 @@ std::vector<Shape> find_shapes(const std::vector<Emitter>& emitters) {
     std::vector<Shape> shapes;
     for (std::size_t i = 0; i < emitters.size(); ++i) {
         const Emitter& e = emitters[i];
-        shapes.push_back({LIGHT_TRIANGLE, e.vertices[0], e.edge1(), e.edge2(), e.offset, i, i});
+        shapes.push_back(
+            {LIGHT_TRIANGLE, e.vertices[0], e.edge1(), e.edge2(), e.offset, i, i, e.textured});
     }
     for (const bool diagonals : {true, false}) {
         EdgeTable table(emitters);
@@ -161,6 +163,7 @@ std::vector<Shape> find_shapes(const std::vector<Emitter>& emitters) {
                 if (!is_parallelogram(joined, emitters[other], j)) continue;
                 joined.emitter = other;
                 joined.second = i;
+                joined.textured = emitters[i].textured;
                 shapes[other] = joined;
                 shapes[i].kind = gone;
             }
@@ -181,6 +184,7 @@ unsigned parts_of(double length, double side) {
 // The numbers of cells along u and v; there are as many as their product. A triangle is cut to four
 // and these again, until the longest edge is short enough.
 glm::uvec2 cells_along(const Shape& s, double side) {
+    if (s.textured) side /= textured_cells;
     if (s.kind == LIGHT_QUAD)
         return {parts_of(glm::length(s.u), side), parts_of(glm::length(s.v), side)};
     const double longest = std::max({glm::length(s.u), glm::length(s.v), glm::length(s.u - s.v)});
@@ -202,13 +206,47 @@ double choose_side(const std::vector<Shape>& shapes) {
     return side;
 }
 
-void add_cells(AreaLights& out, const Shape& s, const Emitter& e, double side) {
+// A point of an emitter's plane, or a vector in it, by its weights of vertices 1 and 2.
+glm::dvec2 weights_of(const Emitter& e, const glm::dvec3& v) {
+    const glm::dvec3 a(e.edge1());
+    const glm::dvec3 b(e.edge2());
+    const glm::dmat2 gram(glm::dot(a, a), glm::dot(a, b), glm::dot(a, b), glm::dot(b, b));
+    return glm::inverse(gram) * glm::dvec2(glm::dot(a, v), glm::dot(b, v));
+}
+
+// Where in or, below 0, how far out of the emitter a point of its plane is.
+double inside(const Emitter& e, const glm::dvec3& p) {
+    const glm::dvec2 w = weights_of(e, p - glm::dvec3(e.vertices[0]));
+    return std::min({w.x, w.y, 1 - w.x - w.y});
+}
+
+// The radiance of a cell of a textured shape's emitters.
+glm::vec3 radiance_of(const Light& cell, const Emitter& first, const Emitter& second,
+                      const RadianceOfPart& radiance_of_part) {
+    const bool triangle = static_cast<LightKind>(cell.position.w) == LIGHT_TRIANGLE;
+    const glm::dvec3 corner(glm::vec3(cell.position));
+    const glm::dvec3 u(glm::vec3(cell.axis));
+    const glm::dvec3 v(glm::vec3(cell.edge));
+    const glm::dvec3 centre = corner + (u + v) / (triangle ? 3.0 : 2.0);
+    const Emitter& e = inside(first, centre) >= inside(second, centre) ? first : second;
+    const glm::dmat2 edges(glm::dvec2(e.at[1] - e.at[0]), glm::dvec2(e.at[2] - e.at[0]));
+    return radiance_of_part(
+        e, glm::dvec2(e.at[0]) + edges * weights_of(e, corner - glm::dvec3(e.vertices[0])),
+        edges * weights_of(e, u), edges * weights_of(e, v), triangle);
+}
+
+void add_cells(AreaLights& out, const Shape& s, const std::vector<Emitter>& emitters, double side,
+               const RadianceOfPart& radiance_of_part) {
+    const Emitter& e = emitters[s.emitter];
     const glm::uvec2 n = cells_along(s, side);
     const glm::dvec3 u = s.u / static_cast<double>(n.x);
     const glm::dvec3 v = s.v / static_cast<double>(n.y);
     const auto add = [&](const glm::dvec3& corner, double sign) {
-        out.lights.push_back({float4(corner, s.kind), float4(sign * u, e.both_sides ? 1 : 0),
-                              float4(sign * v, s.offset), float4(e.radiance, 0)});
+        Light cell{float4(corner, s.kind), float4(sign * u, e.both_sides ? 1 : 0),
+                   float4(sign * v, s.offset), float4(e.radiance, 0)};
+        if (s.textured)
+            cell.emission = float4(radiance_of(cell, e, emitters[s.second], radiance_of_part), 0);
+        if (cell.emission != float4(0)) out.lights.push_back(cell);
     };
     const bool triangle = s.kind == LIGHT_TRIANGLE;
     const auto area = static_cast<float>(glm::length(glm::cross(u, v)) / (triangle ? 2 : 1));
@@ -225,12 +263,13 @@ void add_cells(AreaLights& out, const Shape& s, const Emitter& e, double side) {
 
 }  // namespace
 
-AreaLights make_area_lights(const std::vector<Emitter>& emitters) {
+AreaLights make_area_lights(const std::vector<Emitter>& emitters,
+                            const RadianceOfPart& radiance_of_part) {
     const std::vector<Shape> shapes = find_shapes(emitters);
     const double side = choose_side(shapes);
     AreaLights out;
     out.cell_areas.resize(emitters.size());
-    for (const Shape& s : shapes) add_cells(out, s, emitters[s.emitter], side);
+    for (const Shape& s : shapes) add_cells(out, s, emitters, side, radiance_of_part);
     return out;
 }
 

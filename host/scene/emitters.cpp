@@ -4,16 +4,44 @@
 #include <glm/gtc/constants.hpp>
 
 #include "scene/area_lights.hpp"
+#include "scene/textures.hpp"
 #include "shared/surface.h"
 
 namespace manylight {
 namespace {
+
+const TextureMap* emission_map(const Scene& scene, const Emitter& e) {
+    if (scene.maps.empty()) return nullptr;
+    const TextureMap& map = scene.maps[MAP_KIND_COUNT * e.material + MAP_EMISSION];
+    return map.texture == NO_TEXTURE ? nullptr : &map;
+}
+
+glm::vec3 radiance_of_part(const Scene& scene, const Emitter& e, glm::dvec2 corner, glm::dvec2 u,
+                           glm::dvec2 v, bool triangle) {
+    const Texture& texture = scene.textures[emission_map(scene, e)->texture];
+    return glm::vec3(scene.materials[e.material].emission) *
+           glm::vec3(mean_of_part(scene, texture, corner, u, v, triangle));
+}
+
+// Where an emitter is on the texture of its emission, and its mean radiance.
+void find_texture(const Scene& scene, Emitter& e) {
+    const TextureMap* map = emission_map(scene, e);
+    if (!map) return;
+    e.textured = true;
+    for (int k = 0; k < 3; ++k) {
+        const std::uint32_t vertex = scene.indices[3 * std::size_t{e.triangle} + k];
+        const glm::vec3 st(scene.coordinates[map->set][vertex], 1);
+        e.at[k] = {glm::dot(glm::vec3(map->u), st), glm::dot(glm::vec3(map->v), st)};
+    }
+    e.radiance = radiance_of_part(scene, e, e.at[0], e.at[1] - e.at[0], e.at[2] - e.at[0], true);
+}
 
 std::vector<Emitter> find_emitters(const Scene& scene) {
     std::vector<Emitter> emitters;
     for (std::size_t t = 0; t < scene.triangle_count(); ++t) {
         const Material& material = scene.materials[scene.triangle_materials[t]];
         if (glm::vec3(material.emission) == glm::vec3(0)) continue;
+        if (material.unlit != 0) continue;
         Emitter e{{}, material.emission, material.emission.w != 0, 0, 0, 0, 0};
         e.material = scene.triangle_materials[t];
         e.triangle = static_cast<std::uint32_t>(t);
@@ -24,6 +52,8 @@ std::vector<Emitter> find_emitters(const Scene& scene) {
         }
         const double area = glm::length(glm::dvec3(glm::cross(e.edge1(), e.edge2()))) / 2;
         if (!(area > 0)) continue;
+        find_texture(scene, e);
+        if (e.radiance == glm::vec3(0)) continue;
         e.offset = OFFSET_SCALE * std::max({extent.x, extent.y, extent.z});
         e.power = glm::pi<double>() * area * luminance(e.radiance) * (e.both_sides ? 2 : 1);
         emitters.push_back(e);
@@ -117,7 +147,10 @@ void add_emitters(Scene& scene, unsigned points) {
     if (points > 0) {
         lights = make_points(emitters, points);
     } else if (!emitters.empty()) {
-        AreaLights made = make_area_lights(emitters);
+        AreaLights made = make_area_lights(
+            emitters,
+            [&scene](const Emitter& e, glm::dvec2 corner, glm::dvec2 u, glm::dvec2 v,
+                     bool triangle) { return radiance_of_part(scene, e, corner, u, v, triangle); });
         lights = std::move(made.lights);
         scene.cell_areas.assign(scene.triangle_count(), 0.f);
         for (std::size_t i = 0; i < emitters.size(); ++i)

@@ -2,7 +2,9 @@
 // glTF 2.0 files to scenes. What is read and what is warned about: docs/scenes.md.
 #pragma once
 
+#include <filesystem>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -29,6 +31,18 @@ struct GltfFile {
 
 /// Reads and parses; checks the container, the nesting depth and the JSON syntax.
 [[nodiscard]] GltfFile read_gltf(const std::string& path);
+
+/// The file that a relative URI names: percent-decoded, seen from the scene's folder, links
+/// followed.
+[[nodiscard]] std::filesystem::path path_of_uri(const GltfFile& file, const std::string& uri);
+
+/// The bytes of the file that a URI names, which check_gltf() has found to lead nowhere else.
+/// Throws InputError that starts with `where`.
+[[nodiscard]] std::vector<unsigned char> read_beside(const GltfFile& file, const std::string& uri,
+                                                     const std::string& where);
+
+/// The extensions that are rendered.
+[[nodiscard]] const std::set<std::string>& known_extensions();
 
 /// Checks all values of the JSON: types, ranges, indices, node hierarchy, URIs, versions.
 void check_gltf(const GltfFile& file);

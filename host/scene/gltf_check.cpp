@@ -26,6 +26,7 @@ class Checker {
         each("accessors", &Checker::accessor);
         each("images", &Checker::image);
         each("textures", &Checker::texture);
+        each("samplers", &Checker::sampler);
         each("materials", &Checker::material);
         each("meshes", &Checker::mesh);
         each("cameras", &Checker::camera);
@@ -47,6 +48,7 @@ class Checker {
     static constexpr const char* lights_extension = "KHR_lights_punctual";
     static constexpr const char* emitter_points_key = "emitter_points";
     static constexpr std::uint64_t most_emitter_points = 1u << 24;
+    static constexpr std::uint64_t most_coordinate_sets = 15;
     static constexpr std::size_t none = ~std::size_t{0};
 
     [[nodiscard]] std::size_t count(const char* kind) const {
@@ -77,8 +79,7 @@ class Checker {
             for (std::size_t i = 0; i < names.size(); ++i) {
                 const std::string name = names.at(i).string();
                 if (std::string_view(key) == "extensionsUsed") continue;
-                if (name != lights_extension && name != "KHR_materials_emissive_strength" &&
-                    name != "KHR_materials_specular")
+                if (!known_extensions().contains(name))
                     names.at(i).refuse("the file cannot be rendered without {}, which is not known",
                                        name);
             }
@@ -96,25 +97,18 @@ class Checker {
                 value.refuse("'{}' is no type of a buffer's data", head);
             return;
         }
-        std::string path;
-        for (std::size_t i = 0; i < text.size(); ++i) {
-            if (text[i] != '%' || i + 2 >= text.size() || !std::isxdigit(text[i + 1]) ||
-                !std::isxdigit(text[i + 2])) {
-                path += text[i];
-                continue;
-            }
-            path += static_cast<char>(std::stoi(text.substr(i + 1, 2), nullptr, 16));
-            i += 2;
-        }
         namespace fs = std::filesystem;
-        if (path.empty() || path.find('\0') != std::string::npos)
+        const fs::path target = path_of_uri(file_, text);
+        const auto holds = [&text](std::string_view part) {
+            return text.find(part) != std::string::npos;
+        };
+        if (target.empty() || holds({"\0", 1}) || holds("%00"))
             value.refuse("{} names no file", value.shown());
-        if (path.find(':') != std::string::npos)
+        if (holds(":") || holds("%3a") || holds("%3A"))
             value.refuse("{}: only files beside the scene are read", value.shown());
         std::error_code error;
         const fs::path folder =
             fs::weakly_canonical(fs::absolute(file_.path, error).parent_path(), error);
-        const fs::path target = fs::weakly_canonical(folder / path, error);
         if (std::ranges::mismatch(folder, target).in1 != folder.end())
             value.refuse("{} leads outside the scene's folder", value.shown());
         if (must_exist && !fs::is_regular_file(target, error))
@@ -196,6 +190,8 @@ class Checker {
     }
 
     void image(const JsonValue& image, std::size_t) {
+        if (image.has("uri") == image.has("bufferView"))
+            image.refuse("has not one of 'uri' and 'bufferView'");
         if (image.has("uri")) uri(image["uri"], false);
         optional_index(image, "bufferView", "bufferViews", "bufferView");
     }
@@ -203,11 +199,41 @@ class Checker {
     void texture(const JsonValue& texture, std::size_t) {
         optional_index(texture, "source", "images", "image");
         optional_index(texture, "sampler", "samplers", "sampler");
+        if (!texture.has("extensions")) return;
+        const JsonValue extensions = texture["extensions"].object();
+        if (extensions.has("EXT_texture_webp"))
+            optional_index(extensions["EXT_texture_webp"].object(), "source", "images", "image");
+    }
+
+    void sampler(const JsonValue& sampler, std::size_t) {
+        const auto mode = [&](const char* key, const std::set<std::uint64_t>& allowed) {
+            if (sampler.has(key) && !allowed.contains(sampler[key].integer()))
+                sampler[key].refuse("{} is no {}", sampler[key].shown(), key);
+        };
+        mode("magFilter", {9728, 9729});
+        mode("minFilter", {9728, 9729, 9984, 9985, 9986, 9987});
+        for (const char* key : {"wrapS", "wrapT"}) mode(key, {10497, 33071, 33648});
+    }
+
+    void texture_coordinates(const JsonValue& object) {
+        if (object.has("texCoord") && object["texCoord"].integer() > most_coordinate_sets)
+            object["texCoord"].refuse("{} is more than {}", object["texCoord"].shown(),
+                                      most_coordinate_sets);
     }
 
     void texture_info(const JsonValue& object, const char* key) {
-        if (object.has(key))
-            (void)object[key].object()["index"].index(count("textures"), "texture");
+        if (!object.has(key)) return;
+        const JsonValue info = object[key].object();
+        (void)info["index"].index(count("textures"), "texture");
+        texture_coordinates(info);
+        if (!info.has("extensions")) return;
+        const JsonValue extensions = info["extensions"].object();
+        if (!extensions.has("KHR_texture_transform")) return;
+        const JsonValue moved = extensions["KHR_texture_transform"].object();
+        for (const char* pair : {"offset", "scale"})
+            if (moved.has(pair)) moved[pair].numbers(2);
+        if (moved.has("rotation")) (void)moved["rotation"].number();
+        texture_coordinates(moved);
     }
 
     void material(const JsonValue& material, std::size_t) {
@@ -221,6 +247,8 @@ class Checker {
         }
         for (const char* key : {"normalTexture", "occlusionTexture", "emissiveTexture"})
             texture_info(material, key);
+        if (material.has("normalTexture") && material["normalTexture"].has("scale"))
+            (void)material["normalTexture"]["scale"].number();
         if (material.has("emissiveFactor")) material["emissiveFactor"].colors(3);
         if (material.has("doubleSided")) material["doubleSided"].boolean();
         if (material.has("alphaMode"))
@@ -233,10 +261,19 @@ class Checker {
             if (strength.has("emissiveStrength"))
                 (void)strength["emissiveStrength"].at_least_zero();
         }
+        if (extensions.has("KHR_materials_ior")) {
+            const JsonValue ior = extensions["KHR_materials_ior"].object();
+            if (ior.has("ior") && ior["ior"].at_least_zero() != 0 && ior["ior"].number() < 1)
+                ior["ior"].refuse("{} is neither 0 nor at least 1", ior["ior"].shown());
+        }
         if (extensions.has("KHR_materials_specular")) {
             const JsonValue specular = extensions["KHR_materials_specular"].object();
             if (specular.has("specularFactor")) (void)specular["specularFactor"].within(0, 1);
-            if (specular.has("specularColorFactor")) specular["specularColorFactor"].numbers(3);
+            if (specular.has("specularColorFactor")) {
+                const JsonValue color = specular["specularColorFactor"];
+                color.numbers(3);
+                for (std::size_t i = 0; i < 3; ++i) (void)color.at(i).at_least_zero();
+            }
             texture_info(specular, "specularTexture");
             texture_info(specular, "specularColorTexture");
         }
@@ -396,6 +433,14 @@ class Checker {
 };
 
 }  // namespace
+
+const std::set<std::string>& known_extensions() {
+    static const std::set<std::string> known = {
+        "EXT_texture_webp",     "KHR_lights_punctual",    "KHR_materials_emissive_strength",
+        "KHR_materials_ior",    "KHR_materials_specular", "KHR_materials_unlit",
+        "KHR_texture_transform"};
+    return known;
+}
 
 void check_gltf(const GltfFile& file) { Checker(file).check(); }
 

@@ -1,15 +1,17 @@
 // SPDX-License-Identifier: MIT
 #define GLM_ENABLE_EXPERIMENTAL
+#include <algorithm>
+#include <bit>
 #include <cstring>
 #include <glm/gtc/matrix_transform.hpp>
 #include <glm/gtc/quaternion.hpp>
 #include <glm/gtc/type_ptr.hpp>
 #include <glm/gtx/component_wise.hpp>
-#include <set>
 
 #include "error.hpp"
+#include "scene/alpha.hpp"
 #include "scene/gltf.hpp"
-#include "scene/gltf_parse.hpp"
+#include "scene/gltf_textures.hpp"
 
 namespace manylight {
 namespace {
@@ -44,13 +46,17 @@ glm::dmat4 local_transform(const tinygltf::Node& node) {
 
 class Loader {
   public:
-    explicit Loader(const GltfFile& file) : model_(parse_gltf(file)) { scene_.file = file.path; }
+    explicit Loader(const GltfFile& file) : file_(file), model_(parse_gltf(file)) {
+        scene_.file = file.path;
+    }
 
     Scene load() {
         for (const tinygltf::Material& material : model_.materials) add_material(material);
         scene_.materials.push_back(default_material());
         scene_.material_names.emplace_back();
+        coordinate_sets_ = load_textures(file_, model_, used_materials(), scene_);
         visit_nodes();
+        find_alpha(scene_);
         note_what_is_not_rendered();
         if (!has_normals_) scene_.vertex_normals.clear();
         return std::move(scene_);
@@ -58,7 +64,13 @@ class Loader {
 
   private:
     // Material of a primitive that names none: glTF's defaults.
-    static Material default_material() { return {float4(1, 1, 1, 1), float4(0), 1, 1, 0, 0}; }
+    static Material default_material() {
+        Material m{};
+        m.base_color = float4(1);
+        m.reflectance = float4(glm::vec3(USUAL_REFLECTANCE), 0);
+        m.roughness = m.specular = m.alpha = 1;
+        return m;
+    }
 
     void add_material(const tinygltf::Material& in) {
         const auto& pbr = in.pbrMetallicRoughness;
@@ -72,12 +84,50 @@ class Loader {
             in.doubleSided ? 1 : 0);
         const auto roughness = static_cast<float>(pbr.roughnessFactor);
         m.roughness = std::max(roughness * roughness, SMALLEST_ALPHA);
-        m.specular =
-            number(extension(in.extensions, "KHR_materials_specular"), "specularFactor", 1);
+        m.alpha = static_cast<float>(pbr.baseColorFactor[3]);
+        // A cutoff of 0 leaves everything there.
+        if (in.alphaMode == "MASK") m.cutoff = static_cast<float>(in.alphaCutoff);
+        if (in.alphaMode == "BLEND") m.cutoff = -1;
+        const tinygltf::Value& specular = extension(in.extensions, "KHR_materials_specular");
+        m.specular = number(specular, "specularFactor", 1);
+        m.reflectance = reflectance(extension(in.extensions, "KHR_materials_ior"), specular);
+        if (in.extensions.contains("KHR_materials_unlit")) make_unlit(m);
         check_brightness(m.emission,
                          fmt::format("materials[{}]: emission", scene_.materials.size()));
         scene_.materials.push_back(m);
         scene_.material_names.push_back(in.name);
+    }
+
+    // At normal incidence; an index of 0 reflects everything.
+    static float4 reflectance(const tinygltf::Value& ior, const tinygltf::Value& specular) {
+        float4 f0(glm::vec3(USUAL_REFLECTANCE), 0);
+        if (ior.Has("ior")) {
+            const float index = number(ior, "ior", 1.5);
+            const float root = (index - 1) / (index + 1);
+            f0 = float4(glm::vec3(root * root), 0);
+        }
+        if (!specular.Has("specularColorFactor")) return f0;
+        for (int c = 0; c < 3; ++c) {
+            const auto& factor = specular.Get("specularColorFactor").Get(c);
+            f0[c] = std::min(f0[c] * static_cast<float>(factor.GetNumberAsDouble()), 1.f);
+        }
+        return f0;
+    }
+
+    // As bright as its base colour, in cd/m2, to all sides, whatever shines on it.
+    static void make_unlit(Material& m) {
+        m.emission = float4(glm::vec3(m.base_color), 1);
+        m.base_color = float4(0);
+        m.specular = 0;
+        m.unlit = 1;
+    }
+
+    [[nodiscard]] std::vector<bool> used_materials() const {
+        std::vector<bool> used(model_.materials.size(), false);
+        for (const tinygltf::Mesh& mesh : model_.meshes)
+            for (const tinygltf::Primitive& primitive : mesh.primitives)
+                if (primitive.material >= 0) used[primitive.material] = true;
+        return used;
     }
 
     void check_brightness(const glm::vec3& rgb, const std::string& where) const {
@@ -234,8 +284,74 @@ class Loader {
         const bool mirrored = glm::determinant(linear) < 0;  // turns the winding round
         const int material = primitive.material >= 0 ? primitive.material
                                                      : static_cast<int>(model_.materials.size());
+        add_coordinates(primitive, material, positions.size(), where);
+        add_tangents(primitive, material, to_world, positions.size(), where);
+        add_colors(primitive, positions.size(), where);
         add_triangles(corners(primitive, positions.size(), where), primitive.mode, base, mirrored,
                       material);
+    }
+
+    // Those that the scene's textures need; 0 where this primitive's do not.
+    void add_coordinates(const tinygltf::Primitive& primitive, int material, std::size_t count,
+                         const std::string& where) {
+        for (std::size_t set = 0; set < coordinate_sets_.size(); ++set) {
+            const std::string name = fmt::format("TEXCOORD_{}", coordinate_sets_[set]);
+            std::vector<glm::vec2>& out = scene_.coordinates[set];
+            if (!primitive.attributes.contains(name)) {
+                if (needs_coordinates(material, set))
+                    throw InputError(
+                        "{}: {}: its material {} has a texture at {}, which is missing",
+                        scene_.file, where, material, name);
+                out.resize(out.size() + count, glm::vec2(0));
+                continue;
+            }
+            for (const glm::vec4& v : read_normalized(primitive.attributes.at(name), 2, 2, count,
+                                                      where + ".attributes." + name))
+                out.emplace_back(v);
+        }
+    }
+
+    [[nodiscard]] bool needs_coordinates(int material, std::size_t set) const {
+        const auto first = scene_.maps.begin() + MAP_KIND_COUNT * material;
+        return std::any_of(first, first + MAP_KIND_COUNT, [&](const TextureMap& map) {
+            return map.texture != NO_TEXTURE && map.set == set;
+        });
+    }
+
+    // Where a normal map and vertex normals need them.
+    void add_tangents(const tinygltf::Primitive& primitive, int material,
+                      const glm::dmat4& to_world, std::size_t count, const std::string& where) {
+        const auto found = primitive.attributes.find("TANGENT");
+        const bool used = found != primitive.attributes.end() && !scene_.maps.empty() &&
+                          scene_.maps[MAP_KIND_COUNT * material + MAP_NORMAL].texture != NO_TEXTURE;
+        if (!used) {
+            if (!scene_.tangents.empty()) scene_.tangents.resize(scene_.vertices.size(), float4(0));
+            return;
+        }
+        scene_.tangents.resize(scene_.vertices.size() - count, float4(0));
+        const double mirrored = glm::determinant(glm::dmat3(to_world)) < 0 ? -1 : 1;
+        for (const glm::vec4& v :
+             read_normalized(found->second, 4, 4, count, where + ".attributes.TANGENT")) {
+            const glm::dvec3 along = glm::dmat3(to_world) * glm::dvec3(v);
+            const double length = glm::length(along);
+            const bool valid = std::isfinite(length) && length > 0;
+            scene_.tangents.push_back(
+                valid ? float4(glm::vec3(along / length), v.w < 0 ? -mirrored : mirrored)
+                      : float4(0));
+        }
+    }
+
+    void add_colors(const tinygltf::Primitive& primitive, std::size_t count,
+                    const std::string& where) {
+        const auto found = primitive.attributes.find("COLOR_0");
+        if (found == primitive.attributes.end()) {
+            if (!scene_.colors.empty()) scene_.colors.resize(scene_.vertices.size(), float4(1));
+            return;
+        }
+        scene_.colors.resize(scene_.vertices.size() - count, float4(1));
+        for (const glm::vec4& v :
+             read_normalized(found->second, 3, 4, count, where + ".attributes.COLOR_0"))
+            scene_.colors.push_back(glm::clamp(v, 0.f, 1.f));
     }
 
     void add_triangles(const std::vector<std::uint32_t>& corners, int mode, std::size_t base,
@@ -314,6 +430,44 @@ class Loader {
         return out;
     }
 
+    // Vectors of floats, or of unsigned integers that mean 0 to 1; missing components are 1.
+    std::vector<glm::vec4> read_normalized(int index, int fewest, int most, std::size_t count,
+                                           const std::string& where) {
+        const tinygltf::Accessor& accessor = model_.accessors[index];
+        const int type = accessor.componentType;
+        const int components = tinygltf::GetNumComponentsInType(accessor.type);
+        const bool is_float = type == TINYGLTF_COMPONENT_TYPE_FLOAT;
+        const bool is_fraction =
+            accessor.normalized && (type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE ||
+                                    type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT);
+        if (components < fewest || components > most || accessor.type > TINYGLTF_TYPE_VEC4 ||
+            !(is_float || is_fraction))
+            throw InputError(
+                "{}: {}: accessor {} is not VEC{} of float (5126) or normalized unsigned byte or "
+                "short",
+                scene_.file, where, index,
+                most == 2     ? "2"
+                : fewest == 4 ? "4"
+                              : "3 or VEC4");
+        if (accessor.count != count)
+            throw InputError("{}: {}: {} values for {} positions", scene_.file, where,
+                             accessor.count, count);
+        const Elements in = elements(accessor, where);
+        const int bytes = tinygltf::GetComponentSizeInBytes(type);
+        std::vector<glm::vec4> out(in.count, glm::vec4(1));
+        for (std::size_t i = 0; i < in.count; ++i)
+            for (int c = 0; c < components; ++c) {
+                const unsigned char* value = in.data + i * in.stride + c * bytes;
+                std::uint32_t word = 0;
+                std::memcpy(&word, value, bytes);
+                out[i][c] = is_float ? std::bit_cast<float>(word)
+                                     : static_cast<float>(word) / (bytes == 1 ? 255.f : 65535.f);
+                if (!std::isfinite(out[i][c]))
+                    throw InputError("{}: {}: element {} is not finite", scene_.file, where, i);
+            }
+        return out;
+    }
+
     std::vector<std::uint32_t> read_indices(int index, const std::string& where) {
         const tinygltf::Accessor& accessor = model_.accessors[index];
         const int type = accessor.componentType;
@@ -338,45 +492,33 @@ class Loader {
 
     void note_what_is_not_rendered() {
         std::size_t textured = 0;
-        std::size_t transparent = 0;
-        std::size_t colored_specular = 0;
         for (const tinygltf::Material& m : model_.materials) {
             const auto& specular = extension(m.extensions, "KHR_materials_specular");
             const bool specular_texture =
                 specular.Has("specularTexture") || specular.Has("specularColorTexture");
-            textured += m.pbrMetallicRoughness.baseColorTexture.index >= 0 ||
-                        m.pbrMetallicRoughness.metallicRoughnessTexture.index >= 0 ||
-                        m.normalTexture.index >= 0 || m.emissiveTexture.index >= 0 ||
-                        m.occlusionTexture.index >= 0 || specular_texture;
-            transparent += m.alphaMode != "OPAQUE";
-            colored_specular += specular.Has("specularColorFactor");
+            textured += specular_texture;
         }
         std::size_t morphed = 0;
-        std::size_t colored = 0;
         for (const tinygltf::Mesh& mesh : model_.meshes)
-            for (const tinygltf::Primitive& primitive : mesh.primitives) {
+            for (const tinygltf::Primitive& primitive : mesh.primitives)
                 morphed += !primitive.targets.empty();
-                colored += primitive.attributes.contains("COLOR_0");
-            }
-        warn(textured, "materials have textures, which are not rendered; their factors are");
-        warn(transparent, "materials have alpha, which is not rendered; they are opaque");
-        warn(colored_specular, "materials have a specularColorFactor, which is not rendered");
+        warn(textured,
+             "materials have specular textures, which are not rendered; their factors are");
         warn(model_.skins.size(), "skins are not applied; their meshes keep their rest pose");
         warn(morphed, "primitives have morph targets, which are not applied");
-        warn(colored, "primitives have vertex colours, which are not rendered");
         warn(model_.animations.size(), "animations are not applied");
         warn(lines_and_points_, "primitives are points or lines, which are not rendered");
         warn(without_position_, "primitives have no POSITION and are not rendered");
-        const std::set<std::string> known = {
-            "KHR_lights_punctual", "KHR_materials_emissive_strength", "KHR_materials_specular"};
         for (const std::string& name : model_.extensionsUsed)
-            if (!known.contains(name))
+            if (!known_extensions().contains(name))
                 scene_.warnings.push_back(
                     fmt::format("{}: extension {} is not rendered", scene_.file, name));
     }
 
+    const GltfFile& file_;
     tinygltf::Model model_;
     Scene scene_;
+    std::vector<unsigned> coordinate_sets_;  // [set of Scene::coordinates] n of TEXCOORD_n
     bool has_normals_ = false;
     std::size_t lines_and_points_ = 0;
     std::size_t without_position_ = 0;

@@ -6,11 +6,45 @@
 #define TINYGLTF_NO_EXTERNAL_IMAGE
 #include "scene/gltf_parse.hpp"
 
+#include <algorithm>
+#include <cstring>
 #include <filesystem>
 
 #include "error.hpp"
 
 namespace manylight {
+namespace {
+
+// The library refuses images in data URIs of types that it does not know, such as WebP; they are
+// not its business.
+bool has_images_in_text(const nlohmann::json& json) {
+    return json.contains("images") &&
+           std::ranges::any_of(json["images"], [](const nlohmann::json& image) {
+               return image.contains("uri") &&
+                      image["uri"].get_ref<const std::string&>().starts_with("data:");
+           });
+}
+
+// The file without its images.
+std::vector<unsigned char> without_images(const GltfFile& file) {
+    nlohmann::json json = file.json;
+    json.erase("images");
+    std::string text = json.dump();
+    if (!file.is_binary) return {text.begin(), text.end()};
+    text.resize((text.size() + 3) / 4 * 4, ' ');
+    std::uint32_t old_length = 0;
+    std::memcpy(&old_length, file.bytes.data() + 12, 4);
+    std::vector<unsigned char> out(file.bytes.begin(), file.bytes.begin() + 20);
+    out.insert(out.end(), text.begin(), text.end());
+    out.insert(out.end(), file.bytes.begin() + 20 + old_length, file.bytes.end());
+    const auto length = static_cast<std::uint32_t>(text.size());
+    const auto total = static_cast<std::uint32_t>(out.size());
+    std::memcpy(out.data() + 8, &total, 4);
+    std::memcpy(out.data() + 12, &length, 4);
+    return out;
+}
+
+}  // namespace
 
 tinygltf::Model parse_gltf(const GltfFile& file) {
     tinygltf::TinyGLTF parser;
@@ -20,14 +54,17 @@ tinygltf::Model parse_gltf(const GltfFile& file) {
     tinygltf::Model model;
     std::string error;
     std::string warning;
-    const auto length = static_cast<unsigned>(file.bytes.size());
+    std::vector<unsigned char> changed;
+    if (has_images_in_text(file.json)) changed = without_images(file);
+    const std::vector<unsigned char>& bytes = changed.empty() ? file.bytes : changed;
+    const auto length = static_cast<unsigned>(bytes.size());
     const std::string folder = std::filesystem::absolute(file.path).parent_path().string();
-    const bool parsed = file.is_binary
-                            ? parser.LoadBinaryFromMemory(&model, &error, &warning,
-                                                          file.bytes.data(), length, folder)
-                            : parser.LoadASCIIFromString(
-                                  &model, &error, &warning,
-                                  reinterpret_cast<const char*>(file.bytes.data()), length, folder);
+    const bool parsed =
+        file.is_binary
+            ? parser.LoadBinaryFromMemory(&model, &error, &warning, bytes.data(), length, folder)
+            : parser.LoadASCIIFromString(&model, &error, &warning,
+                                         reinterpret_cast<const char*>(bytes.data()), length,
+                                         folder);
     if (!parsed) {
         while (!error.empty() && error.back() == '\n') error.pop_back();
         std::ranges::replace(error, '\n', ' ');

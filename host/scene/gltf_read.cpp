@@ -96,6 +96,32 @@ void check_nesting(const GltfFile& file, std::string_view text) {
 
 }  // namespace
 
+std::filesystem::path path_of_uri(const GltfFile& file, const std::string& uri) {
+    std::string path;
+    for (std::size_t i = 0; i < uri.size(); ++i) {
+        if (uri[i] != '%' || i + 2 >= uri.size() || !std::isxdigit(uri[i + 1]) ||
+            !std::isxdigit(uri[i + 2])) {
+            path += uri[i];
+            continue;
+        }
+        path += static_cast<char>(std::stoi(uri.substr(i + 1, 2), nullptr, 16));
+        i += 2;
+    }
+    namespace fs = std::filesystem;
+    std::error_code error;
+    const fs::path folder = fs::absolute(file.path, error).parent_path();
+    return path.empty() ? fs::path() : fs::weakly_canonical(folder / path, error);
+}
+
+std::vector<unsigned char> read_beside(const GltfFile& file, const std::string& uri,
+                                       const std::string& where) {
+    const std::filesystem::path path = path_of_uri(file, uri);
+    std::error_code error;
+    if (!std::filesystem::is_regular_file(path, error))
+        throw InputError("{}: '{}': no such file beside the scene", where, uri);
+    return read_file(path.string());
+}
+
 GltfFile read_gltf(const std::string& path) {
     GltfFile file;
     file.path = path;

@@ -21,6 +21,11 @@ View frame_all(const Bounds& bounds) {
     return view;
 }
 
+bool has_map(const Scene& scene, std::size_t material, MapKind kind) {
+    return !scene.maps.empty() &&
+           scene.maps[MAP_KIND_COUNT * material + kind].texture != NO_TEXTURE;
+}
+
 }  // namespace
 
 Bounds Scene::bounds() const {
@@ -41,10 +46,15 @@ Features find_features(const Scene& scene) {
         if (material.base_color.w > 0 || material.specular > 0) features.ggx = true;
         if (glm::vec3(material.emission) != glm::vec3(0)) features.emission = true;
         if (material.base_color.w > 0 || material.specular > 0)
-            features.reflections |=
-                material.roughness < REFLECTING_ALPHA && !scene.cell_areas.empty();
+            features.reflections |= (material.roughness < REFLECTING_ALPHA ||
+                                     has_map(scene, i, MAP_METALLIC_ROUGHNESS)) &&
+                                    !scene.cell_areas.empty();
     }
     features.smooth = !scene.vertex_normals.empty();
+    features.textures = !scene.maps.empty();
+    features.colors = !scene.colors.empty();
+    features.tangents = !scene.tangents.empty();
+    features.alpha = !scene.alpha_triangles.empty();
     return features;
 }
 

@@ -13,6 +13,7 @@
 #include "shared/camera.h"
 #include "shared/light.h"
 #include "shared/material.h"
+#include "shared/texture.h"
 
 namespace manylight {
 
@@ -48,6 +49,19 @@ struct Scene {
     std::vector<std::uint32_t> triangle_materials;  // [triangle] into materials
     std::vector<Material> materials;
     std::vector<std::string> material_names;  // [material], as in the file; may be empty
+    std::vector<TextureMap> maps;   // [MAP_KIND_COUNT * material + MapKind]; empty if all are none
+    std::vector<Texture> textures;  // what maps name
+    std::vector<std::uint32_t> texels;                // of all textures, see shared/texture.h
+    std::vector<std::vector<glm::vec2>> coordinates;  // [set][vertex] on textures
+    // [vertex], linear RGBA, 0 to 1, times the material's; may be empty
+    std::vector<float4> colors;
+    // [vertex], xyz: unit, w: 1 or -1 as in glTF; 0 where texture coordinates are to say; empty if
+    // all are
+    std::vector<float4> tangents;
+    // Of the triangles of which not all is there, and [triangle] which of these, or NO_ALPHA; both
+    // empty if there are none.
+    std::vector<AlphaTriangle> alpha_triangles;
+    std::vector<std::uint32_t> alpha_of;
     std::vector<Light> lights;
     std::vector<std::string> light_names;  // likewise, of the file's own lights, which come first
     std::vector<float> cell_areas;  // [triangle], m2, of each of the cells that its area light is
@@ -58,6 +72,9 @@ struct Scene {
 
     [[nodiscard]] std::size_t triangle_count() const { return triangle_materials.size(); }
     [[nodiscard]] Bounds bounds() const;
+    /// Whether a surface point's material is its own: its textures and vertex colours say more than
+    /// its triangle's does.
+    [[nodiscard]] bool varies_materials() const { return !maps.empty() || !colors.empty(); }
 };
 
 /// Which kernel code a scene needs.
@@ -67,6 +84,10 @@ struct Features {
     bool smooth = false;                // a mesh has vertex normals
     bool emission = false;              // emitters can be seen
     bool reflections = false;           // glossy materials reflect area lights
+    bool textures = false;              // materials have textures
+    bool colors = false;                // vertices have colours
+    bool tangents = false;              // vertices have tangents
+    bool alpha = false;                 // not all of every triangle is there
 };
 
 [[nodiscard]] Features find_features(const Scene& scene);

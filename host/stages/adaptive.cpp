@@ -55,7 +55,8 @@ void AdaptiveStage::draw(const Tiles& tiles, const Pass& pass, const Budget& bud
     const std::size_t groups = pass_pixels(pass) / 16;
     draw_.launch(groups, arguments);
     aim_.launch(groups, arguments);
-    shadows_.trace(pass_pixels(pass) * pass.packets, 16 * pass.packets, packet_counts_);
+    shadows_.trace(pass_pixels(pass) * pass.packets, 16 * pass.packets, packet_counts_,
+                   sample.salt());
     add_.launch(pass_pixels(pass), arguments);
 }
 

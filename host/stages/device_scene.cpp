@@ -20,6 +20,32 @@ Defines kind_defines(const Features& features) {
     return defines;
 }
 
+// Whether a dielectric reflects otherwise than one of the index 1.5.
+bool varies_reflectance(const Scene& scene) {
+    return std::ranges::any_of(scene.materials, [](const Material& m) {
+        return m.specular > 0 && m.reflectance != float4(glm::vec3(USUAL_REFLECTANCE), 0);
+    });
+}
+
+void set_textures(Device& device, const Scene& scene, Arguments& arguments) {
+    const std::size_t vertices = scene.vertices.size();
+    Buffer<glm::vec2> coordinates = device.allocate<glm::vec2>(scene.coordinates.size() * vertices);
+    for (std::size_t set = 0; set < scene.coordinates.size(); ++set)
+        coordinates.upload(scene.coordinates[set], set * vertices);
+    const Buffer<Texture> textures = device.upload(scene.textures);
+    const Buffer<std::uint32_t> texels = device.upload(scene.texels);
+    arguments.set("maps", device.upload(scene.maps))
+        .set("textures", textures)
+        .set("texels", texels)
+        .set("coordinates", coordinates)
+        .set("vertex_count", static_cast<uint>(vertices))
+        .set("alpha_textures", textures)  // traversal has its own names
+        .set("alpha_texels", texels)
+        .set("alpha_of", device.upload(scene.alpha_of))
+        .set("alpha_triangles", device.upload(scene.alpha_triangles))
+        .set("alpha_salt", 0u);
+}
+
 }  // namespace
 
 unsigned lanes_for(const DeviceInfo& device) {
@@ -28,23 +54,31 @@ unsigned lanes_for(const DeviceInfo& device) {
 }
 
 DeviceScene upload_scene(Device& device, const Scene& scene, const WideBvh& bvh,
-                         const Camera& camera, const LightTree* tree) {
+                         const Camera& camera, const LightTree* tree, std::size_t points) {
     const Features features = find_features(scene);
     DeviceScene out;
     out.light_count = static_cast<uint>(scene.lights.size());
     out.packets = !device.info().is_gpu;
     out.primary_packets = out.packets && camera.forward.w == 0;
+    out.varies_materials = scene.varies_materials();
+    out.own_materials = static_cast<uint>(scene.materials.size());
+    out.materials =
+        device.allocate<Material>(scene.materials.size() + (out.varies_materials ? points : 0));
+    out.materials.upload(scene.materials);
     out.arguments.set("camera", camera)
         .set("bvh_nodes", device.upload(bvh.nodes))
         .set("bvh_blocks", device.upload(bvh.blocks))
         .set("vertices", device.upload(flat(scene.vertices)))
         .set("indices", device.upload(scene.indices))
         .set("triangle_materials", device.upload(scene.triangle_materials))
-        .set("materials", device.upload(scene.materials))
+        .set("materials", out.materials)
         .set("lights", device.upload(tree ? tree->lights : scene.lights))
         .set("light_count", out.light_count);
     if (features.smooth)
         out.arguments.set("vertex_normals", device.upload(flat(scene.vertex_normals)));
+    if (features.textures || features.alpha) set_textures(device, scene, out.arguments);
+    if (features.tangents) out.arguments.set("tangents", device.upload(scene.tangents));
+    if (features.colors) out.arguments.set("colors", device.upload(scene.colors));
     if (features.reflections) out.arguments.set("cell_areas", device.upload(scene.cell_areas));
     if (tree)
         out.arguments.set("nodes", device.upload(tree->nodes))
@@ -52,12 +86,17 @@ DeviceScene upload_scene(Device& device, const Scene& scene, const WideBvh& bvh,
             .set("second_root", tree->roots.size() > 1 ? tree->roots[1] : 0);
     out.traversal = {{"BVH_WIDTH", static_cast<int>(bvh.width)},
                      {"BVH_BLOCK", static_cast<int>(bvh.block)},
-                     {"BVH_STACK", static_cast<int>(bvh.stack)}};
+                     {"BVH_STACK", static_cast<int>(bvh.stack)},
+                     {"HAS_ALPHA", features.alpha}};
     out.surfaces = out.traversal;
     out.surfaces["HAS_SMOOTH"] = features.smooth;
+    out.surfaces["HAS_TEXTURES"] = features.textures;
+    out.surfaces["HAS_TANGENTS"] = features.tangents;
+    out.surfaces["HAS_COLORS"] = features.colors;
     out.shading = out.traversal;
     out.shading.merge(kind_defines(features));
     out.shading["HAS_GGX"] = features.ggx;
+    if (varies_reflectance(scene)) out.shading["HAS_REFLECTANCE"] = 1;
     out.shading["HAS_REFLECTIONS"] = features.reflections;
     out.emission = {{"HAS_EMISSION", features.emission}};
     return out;

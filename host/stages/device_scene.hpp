@@ -16,6 +16,9 @@ struct DeviceScene {
     Defines shading;      // for kernels that evaluate lights and materials, traversal included
     Defines emission;     // for kernels that add what surfaces emit
     uint light_count = 0;
+    Buffer<Material> materials;  // the scene's, and behind them those of points (see GBufferStage)
+    uint own_materials = 0;      // index of the first of these
+    bool varies_materials = false;
     bool packets = false;          // rays with one origin are traced 16 at a time
     bool primary_packets = false;  // ... and primary rays have one origin
 };
@@ -24,8 +27,10 @@ struct DeviceScene {
 [[nodiscard]] unsigned lanes_for(const DeviceInfo& device);
 
 /// Uploads a scene whose lights are complete (add_emitters): in the order of `tree`, and with its
-/// nodes (nodes, root_count, second_root), if there is one.
+/// nodes (nodes, root_count, second_root), if there is one. `points`: how many points have a
+/// material of their own where the scene varies them.
 [[nodiscard]] DeviceScene upload_scene(Device& device, const Scene& scene, const WideBvh& bvh,
-                                       const Camera& camera, const LightTree* tree = nullptr);
+                                       const Camera& camera, const LightTree* tree = nullptr,
+                                       std::size_t points = 0);
 
 }  // namespace manylight

@@ -30,7 +30,7 @@ void SampleStage::draw(const Tiles& tiles, const PixelSample& sample, uint light
         const uint end = std::min(first + 16, light_samples);
         arguments.set("first_sample", first).set("end_sample", end).set("start", uint{first == 0});
         draw_.launch(items, arguments);
-        shadows_.trace(items);
+        shadows_.trace(items, sample.salt());
         add_.launch(items, arguments);
         progress(items * (end - first));
     }

@@ -25,9 +25,12 @@ Arguments ShadowStage::buffers() const {
     return Arguments().set("origins", origins_).set("rays", rays_);
 }
 
-void ShadowStage::launch(std::size_t count, const Arguments& regions) {
-    trace_.launch(16 * count / rays_per_item_, Arguments(scene_).set(buffers()).set(regions).set(
-                                                   "packet_count", static_cast<uint>(count)));
+void ShadowStage::launch(std::size_t count, uint salt, const Arguments& regions) {
+    trace_.launch(16 * count / rays_per_item_, Arguments(scene_)
+                                                   .set(buffers())
+                                                   .set(regions)
+                                                   .set("alpha_salt", salt)
+                                                   .set("packet_count", static_cast<uint>(count)));
 }
 
 }  // namespace manylight

@@ -19,12 +19,12 @@ class ShadowStage {
     /// The rays themselves.
     [[nodiscard]] const Buffer<float>& rays() const { return rays_; }
 
-    /// Ends the rays of packets 0 to `count` that are occluded at -1.
-    void trace(std::size_t count) { launch(count, {}); }
+    /// Ends the rays of packets 0 to `count` that are occluded at -1. `salt` as PixelSample's.
+    void trace(std::size_t count, uint salt = 0) { launch(count, salt, {}); }
 
     /// The same of regions of `region` packets, of which packet_counts[i] are in use.
-    void trace(std::size_t count, uint region, const Buffer<uint>& packet_counts) {
-        launch(count, Arguments().set("region", region).set("packet_counts", packet_counts));
+    void trace(std::size_t count, uint region, const Buffer<uint>& packet_counts, uint salt) {
+        launch(count, salt, Arguments().set("region", region).set("packet_counts", packet_counts));
     }
 
     /// Bytes of a packet on the device.
@@ -33,7 +33,7 @@ class ShadowStage {
     }
 
   private:
-    void launch(std::size_t count, const Arguments& regions);
+    void launch(std::size_t count, uint salt, const Arguments& regions);
 
     Arguments scene_;
     Kernel trace_;

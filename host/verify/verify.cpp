@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstring>
 
+#include "scene/alpha.hpp"
 #include "shared/adaptive.h"
 
 namespace manylight {
@@ -39,24 +40,36 @@ Tiles choose_tiles(const VerifyOptions& options, std::size_t lights) {
     return tiles;
 }
 
+// A copy, where the points' materials are to be added. What rays pass by chance is made a mask.
+const Scene& copy_to_change(const Scene& scene, std::optional<Scene>& copy) {
+    if (!scene.varies_materials() && scene.alpha_of.empty()) return scene;
+    copy = scene;
+    mask_all_alpha(*copy);
+    return *copy;
+}
+
 }  // namespace
 
 Verifier::Verifier(Device device, const Scene& scene, const Camera& camera,
                    const VerifyOptions& options)
     : device_(device),
-      scene_(scene),
+      scene_(copy_to_change(scene, varied_)),
       camera_(camera),
       options_(options),
       tiles_(choose_tiles(options, scene.lights.size())),
       reach_(reach_of(scene, camera)),
       bvh_(build_wide_bvh(scene, lanes_for(device.info()), lanes_for(device.info()), reach_)),
-      device_scene_(upload_scene(device_, scene, bvh_, camera)),
+      points_(item_count(all_tiles(options.width, options.height, 64))),
+      device_scene_(upload_scene(device_, scene_, bvh_, camera, nullptr, 2 * points_)),
       tree_(build_light_tree(scene.lights)),
-      tree_scene_(upload_scene(device_, scene, bvh_, camera, &tree_)),
-      tracer_(scene),
+      tree_scene_(upload_scene(device_, scene_, bvh_, camera, &tree_)),
+      tracer_(scene_),
       surfaces_(device_.allocate<Surface>(item_count(tiles_))),
       clustering_(device_, device_scene_, options.clusters, tiles_.count) {
+    tree_scene_.materials = device_scene_.materials;
+    tree_scene_.arguments.set("materials", device_scene_.materials);
     GBufferStage(device_, device_scene_).trace(tiles_, {}, surfaces_);
+    keep_materials();
     found_ = surfaces_.download();
     if (scene.lights.empty()) return;
     clustering_.build(tiles_, surfaces_, [](std::size_t) {});
@@ -64,6 +77,17 @@ Verifier::Verifier(Device device, const Scene& scene, const Camera& camera,
         clustering_.matrix().values.download(0, clustering_.regions().size() * scene.lights.size());
     matrix_.resize(words.size());
     std::memcpy(matrix_.data(), words.data(), words.size() * sizeof(float));
+}
+
+void Verifier::keep_materials() {
+    if (varied_) varied_->materials = device_scene_.materials.download();
+}
+
+Buffer<Surface> Verifier::trace(const Tiles& tiles, const PixelSample& sample) {
+    Buffer<Surface> surfaces = device_.allocate<Surface>(item_count(tiles));
+    GBufferStage(device_, device_scene_).trace(tiles, sample, surfaces, points_);
+    keep_materials();
+    return surfaces;
 }
 
 std::vector<Check> Verifier::all() {

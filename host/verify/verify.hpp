@@ -2,6 +2,7 @@
 // Every kernel against its scalar reference, on the same inputs.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -67,14 +68,21 @@ class Verifier {
   private:
     [[nodiscard]] Tiles tiles_to_sample(uint light_samples) const;
     void check_surface(Check& check, const Surface& found, uint x, uint y, bool jitter);
+    void check_material(Check& check, const Surface& found, const reference::Ray& ray,
+                        const reference::Hit& hit, double shift, const std::string& where);
+    // Surfaces beside surfaces_; where the scene varies materials, the last ones' are in scene_.
+    [[nodiscard]] Buffer<Surface> trace(const Tiles& tiles, const PixelSample& sample);
+    void keep_materials();
 
     Device device_;
+    std::optional<Scene> varied_;  // a copy that is changed, where the scene needs one
     const Scene& scene_;
     Camera camera_;
     VerifyOptions options_;
     Tiles tiles_;  // those in the image's middle, as many as the matrix may have
     float reach_;
     WideBvh bvh_;
+    std::size_t points_;  // that surfaces_ have at most, and those beside them
     DeviceScene device_scene_;
     LightTree tree_;
     DeviceScene tree_scene_;  // with the lights in the tree's order

@@ -35,12 +35,13 @@ struct Run {
     std::vector<float> visible;                              // likewise
     std::vector<float4> estimates;
 
-    Run(Device& device, const DeviceScene& scene, Tiles all, uint cut_size, uint seed)
+    Run(Device& device, const DeviceScene& scene, Tiles all, uint cut_size, uint seed,
+        std::size_t first_point)
         : tiles(all), sample{3, seed, false} {
         tiles.count = std::min(tiles.count, most_tiles);
         first.tile_count = second.tile_count = tiles.count;
         Buffer<Surface> points = device.allocate<Surface>(item_count(tiles));
-        GBufferStage(device, scene).trace(tiles, {}, points);
+        GBufferStage(device, scene).trace(tiles, {}, points, first_point);
         surfaces = points.download();
         Cuts cuts(device, tiles.count);
         CutStage(device, scene).make(tiles, points, {cut_size, probe_rays, seed}, cuts);
@@ -312,7 +313,8 @@ std::vector<Check> Verifier::adaptive(uint cut_size) {
     Tiles tiles = all_tiles(options_.width, options_.height, ADAPTIVE_TILE);
     tiles.first = tiles.count > most_tiles ? (tiles.count - most_tiles) / 2 : 0;
     tiles.count -= tiles.first;
-    const Run run(device_, tree_scene_, tiles, cut_size, options_.seed);
+    const Run run(device_, tree_scene_, tiles, cut_size, options_.seed, points_);
+    keep_materials();
     return {check_cuts(run, tree_, scene_, tracer_, camera_, cut_size),
             check_visibility(run, tree_),
             check_weights(run, tree_, scene_, camera_, 10 * options_.most_entries),

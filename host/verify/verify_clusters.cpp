@@ -76,7 +76,7 @@ Check Verifier::contributions() {
             continue;
         }
         const Surface& surface = found_[representative];
-        const Material& material = scene_.materials[surface.material];
+        const Material& material = scene_.materials[surface.shading];
         const Light& light = scene_.lights[i % lights];
         const reference::Contribution expected =
             reference::contribution(tracer_, surface, material, camera_, light);

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: MIT
 // Stages that work on single pixels: layout and random numbers, gbuffer, accumulate.
 #include <algorithm>
+#include <array>
 #include <cstddef>
 
 #include "reference/accumulate.hpp"
 #include "reference/gbuffer.hpp"
 #include "reference/random.hpp"
+#include "reference/textures.hpp"
 #include "reference/tiles.hpp"
 #include "shared/layout.h"
 #include "stages/accumulate.hpp"
@@ -13,6 +15,20 @@
 #include "verify/verify.hpp"
 
 namespace manylight {
+namespace {
+
+std::array<double, 8> values_of(const Material& m) {
+    return {m.base_color.x, m.base_color.y, m.base_color.z, m.base_color.w,
+            m.emission.x,   m.emission.y,   m.emission.z,   m.roughness};
+}
+
+// To all sides.
+std::array<glm::dvec2, 4> steps_of(double length) {
+    return {glm::dvec2(length, 0), glm::dvec2(-length, 0), glm::dvec2(0, length),
+            glm::dvec2(0, -length)};
+}
+
+}  // namespace
 
 Check Verifier::layout() {
     Check check{.stage = "layout", .tolerance = exact};
@@ -61,11 +77,7 @@ Check Verifier::gbuffer(bool jitter) {
                 .tolerance = "8 eps of the coordinates x triangle's length / height / cosine"};
     std::vector<Surface> found = found_;
     const uint sample = 3;
-    if (jitter) {
-        Buffer<Surface> surfaces = device_.allocate<Surface>(item_count(tiles_));
-        GBufferStage(device_, device_scene_).trace(tiles_, {sample, options_.seed, true}, surfaces);
-        found = surfaces.download();
-    }
+    if (jitter) found = trace(tiles_, {sample, options_.seed, true}).download();
     reference::for_each_pixel(tiles_, [&](uint x, uint y, std::size_t item) {
         check_surface(check, found[item], x, y, jitter);
     });
@@ -117,14 +129,52 @@ void Verifier::check_surface(Check& check, const Surface& found, uint x, uint y,
                   normal_shift,
                   fmt::format("{}: geometric normal {} is not {}", where, show(found.geometric),
                               show(expected.geometric)));
+    double mapped_shift = 0;  // by what a normal map says nearby
+    if (scene_.varies_materials())
+        for (const glm::dvec2& step : steps_of(shift / height)) {
+            const reference::Hit moved{hit->triangle, hit->t, hit->u + step.x, hit->v + step.y};
+            const Surface there = reference::surface_at(scene_, ray, moved);
+            mapped_shift += glm::length(glm::dvec3(there.normal) - glm::dvec3(expected.normal));
+        }
     check.compare(
         glm::length(glm::dvec3(found.normal) - glm::dvec3(expected.normal)),
-        normal_shift + 4 * shift / height,
+        normal_shift + 4 * shift / height + mapped_shift,
         fmt::format("{}: normal {} is not {}", where, show(found.normal), show(expected.normal)));
     check.compare(std::abs(double{found.geometric.w} - expected.geometric.w),
                   4 * epsilon * expected.geometric.w, where + ": offset");
     check.compare_exact(found.material == expected.material && found.front == expected.front,
                         where + ": material or side");
+    check_material(check, found, ray, *hit, shift / height, where);
+}
+
+// `shift`: what rounding may do to the point's weights of vertices.
+void Verifier::check_material(Check& check, const Surface& found, const reference::Ray& ray,
+                              const reference::Hit& hit, double shift, const std::string& where) {
+    if (!scene_.varies_materials())
+        return check.compare_exact(found.shading == found.material, where + ": shading");
+    const auto values = [&](const glm::dvec2& step, double pixel) {
+        reference::Ray moved = ray;
+        for (int k = 0; k < 2; ++k) {
+            moved.origin_change[k] *= pixel;
+            moved.direction_change[k] *= pixel;
+        }
+        return values_of(reference::material_at(
+            scene_, moved, {hit.triangle, hit.t, hit.u + step.x, hit.v + step.y}));
+    };
+    const std::array<double, 8> expected = values({0, 0}, 1);
+    std::array<double, 8> slack{};
+    const auto add_slack = [&](const std::array<double, 8>& moved) {
+        for (std::size_t i = 0; i < slack.size(); ++i) slack[i] += std::abs(moved[i] - expected[i]);
+    };
+    for (const glm::dvec2& step : steps_of(shift)) add_slack(values(step, 1));
+    for (const double pixel : {1 - 1e-5, 1 + 1e-5}) add_slack(values({0, 0}, pixel));
+    const std::array<double, 8> own = values_of(scene_.materials[found.shading]);
+    for (std::size_t i = 0; i < slack.size(); ++i)
+        check.compare(
+            std::abs(own[i] - expected[i]),
+            shading_roundings * epsilon * std::abs(expected[i]) + slack[i],
+            fmt::format("{}: material's value {}: {} is not {}", where, i, own[i], expected[i]),
+            own[i] == 0 && expected[i] == 0);
 }
 
 Check Verifier::accumulate() {

@@ -107,8 +107,7 @@ Check Verifier::samples(const Sampler& sampler) {
     }
     const reference::Tables reference_tables{power_cdf, cdf, item_rows, &tree_};
     const PixelSample sample{2, options_.seed, false};
-    Buffer<Surface> surfaces = device_.allocate<Surface>(item_count(tiles));
-    GBufferStage(device_, device_scene_).trace(tiles, {}, surfaces);
+    Buffer<Surface> surfaces = trace(tiles, {});
     const std::vector<Surface> points = surfaces.download();
     Estimates estimates{device_.allocate<float4>(item_count(tiles)),
                         device_.allocate<float4>(item_count(tiles))};

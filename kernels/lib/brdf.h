@@ -28,7 +28,18 @@ static float schlick(float cosine) {
 }
 
 // Fresnel's terms, where schlick() is s.
-static float dielectric_fresnel(Material m, float s) { return m.specular * (0.04f + 0.96f * s); }
+#if HAS_REFLECTANCE
+typedef float3 Fresnel;
+static Fresnel dielectric_fresnel(Material m, float s) {
+    return m.specular * (m.reflectance.xyz + (1.0f - m.reflectance.xyz) * s);
+}
+// What the diffuse base below does not get.
+static float taken(Fresnel f) { return max(max(f.x, f.y), f.z); }
+#else
+typedef float Fresnel;
+static Fresnel dielectric_fresnel(Material m, float s) { return m.specular * (0.04f + 0.96f * s); }
+static float taken(Fresnel f) { return f; }
+#endif
 
 static float3 metal_fresnel(Material m, float s) {
     return m.base_color.xyz + (1.0f - m.base_color.xyz) * s;
@@ -74,9 +85,9 @@ static float3 brdf(Material m, float3 n, float3 wi, float3 wo, float solid_angle
     lobe *= light_share(lobe_density(lobe, m.roughness, n_in), solid_angle);
 #endif
     const float s = schlick(dot(wo, h));
-    const float dielectric = dielectric_fresnel(m, s);
+    const Fresnel dielectric = dielectric_fresnel(m, s);
     const float3 metal = metal_fresnel(m, s);
-    return (1.0f - metallic) * (diffuse * (1.0f - dielectric) + lobe * dielectric) +
+    return (1.0f - metallic) * (diffuse * (1.0f - taken(dielectric)) + lobe * dielectric) +
            metallic * lobe * metal;
 #else
     return diffuse;

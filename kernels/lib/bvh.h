@@ -10,6 +10,7 @@
 #ifndef MANYLIGHT_LIB_BVH_H
 #define MANYLIGHT_LIB_BVH_H
 
+#include "lib/alpha.h"
 #include "lib/common.h"
 
 #define JOIN_TOKENS(a, b) a##b
@@ -70,8 +71,9 @@ typedef struct Hit {
 #define as_int_k JOIN(as_int, BVH_BLOCK)
 #define as_float_k JOIN(as_float, BVH_BLOCK)
 
-#define BVH_PARAMETERS __global const float_w *bvh_nodes, __global const float_k *bvh_blocks
-#define BVH_ARGUMENTS bvh_nodes, bvh_blocks
+#define BVH_PARAMETERS \
+    __global const float_w *bvh_nodes, __global const float_k *bvh_blocks ALPHA_PARAMETERS
+#define BVH_ARGUMENTS bvh_nodes, bvh_blocks ALPHA_ARGUMENTS
 
 // What the test of boxes needs of a ray.
 typedef struct Prepared {
@@ -187,6 +189,13 @@ static BlockHits hit_block(const PreparedBlock* b, float3 direction, float size,
     return hits;
 }
 
+// The weights of vertices 1 and 2 where a ray meets a triangle of a block.
+static float2 block_weights(const PreparedBlock* b, uint lane, float3 d) {
+#define DOT(v) (d.x * LANE((v)[0], lane) + d.y * LANE((v)[1], lane) + d.z * LANE((v)[2], lane))
+    return (float2)(DOT(b->q), DOT(b->r)) / DOT(b->n);
+#undef DOT
+}
+
 static float largest_part(float3 v) { return max(max(fabs(v.x), fabs(v.y)), fabs(v.z)); }
 
 // Whether anything is hit within the segment.
@@ -199,9 +208,19 @@ static bool occluded(BVH_PARAMETERS, Ray ray) {
     while (top > 0) {
         const int entry = stack[--top];
         if (entry < 0) {
-            const PreparedBlock block =
-                prepare_block(bvh_blocks + (~entry >> 4) * BLOCK_ROWS, ray.origin);
-            if (lanes_k(hit_block(&block, ray.direction, size, ray.end).hit)) return true;
+            __global const float_k* rows = bvh_blocks + (~entry >> 4) * BLOCK_ROWS;
+            const PreparedBlock block = prepare_block(rows, ray.origin);
+            uint found = lanes_k(hit_block(&block, ray.direction, size, ray.end).hit);
+#if HAS_ALPHA
+            __global const uint* triangles = (__global const uint*)(rows + 9);
+            for (; found; found &= found - 1u) {
+                const uint lane = lowest(found);
+                if (is_there(ray.origin, ray.direction, triangles[lane],
+                             block_weights(&block, lane, ray.direction) ALPHA_ARGUMENTS))
+                    break;
+            }
+#endif
+            if (found) return true;
             continue;
         }
         __global const float_w* node = bvh_nodes + entry * 7;
@@ -239,6 +258,11 @@ static Hit closest_hit(BVH_PARAMETERS, Ray ray) {
             for (uint lanes = found; lanes; lanes &= lanes - 1u) {
                 const uint lane = lowest(lanes);
                 if (t[lane] >= hit.t) continue;
+#if HAS_ALPHA
+                if (!is_there(ray.origin, ray.direction, triangles[lane],
+                              block_weights(&ready, lane, ray.direction) ALPHA_ARGUMENTS))
+                    continue;
+#endif
                 hit.triangle = triangles[lane];
                 hit.t = t[lane];
             }

@@ -30,7 +30,7 @@ static Receiver make_receiver(__global const Surface* surface, __global const Ma
     r.geometric = surface->geometric.xyz;
     r.offset = surface->geometric.w;
     r.to_camera = direction_to_camera(camera, r.position);
-    r.material = materials[surface->material];
+    r.material = materials[surface->shading];
     r.reflects = false;
 #if HAS_REFLECTIONS
     r.reflects = (r.material.base_color.w > 0.0f || r.material.specular > 0.0f) &&

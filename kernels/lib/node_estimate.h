@@ -138,6 +138,9 @@ typedef struct NAMED(Points) {
 #if HAS_GGX
     REAL vx, vy, vz;  // unit, to the camera
     REAL metallic, alpha, specular;
+#if HAS_REFLECTANCE
+    REAL f0_red, f0_green, f0_blue;  // Material::reflectance
+#endif
     bool glossy;  // whether any of them has a lobe
 #endif
 } NAMED(Points);
@@ -191,6 +194,19 @@ static NAMED(Color) NAMED(reflect)(const NAMED(Points) * p, REAL wx, REAL wy, RE
 #endif
         const REAL m = max(1.0f - fabs(NAMED(dot3)(p->vx, p->vy, p->vz, hx, hy, hz)), (REAL)(0.0f));
         const REAL fresnel = (m * m) * (m * m) * m;
+#if HAS_REFLECTANCE
+        const REAL red = p->specular * fma(1.0f - p->f0_red, fresnel, p->f0_red);
+        const REAL green = p->specular * fma(1.0f - p->f0_green, fresnel, p->f0_green);
+        const REAL blue = p->specular * fma(1.0f - p->f0_blue, fresnel, p->f0_blue);
+        const REAL ks = (1.0f - p->metallic) * lobe;
+        const REAL metal = p->metallic * lobe * fresnel;
+        const REAL base = (1.0f - p->metallic) * (1.0f - max(max(red, green), blue)) * M_1_PI_F +
+                          p->metallic * lobe * (1.0f - fresnel);
+        c.red = factor * (fma(p->red, base, metal) + ks * red);
+        c.green = factor * (fma(p->green, base, metal) + ks * green);
+        c.blue = factor * (fma(p->blue, base, metal) + ks * blue);
+        return c;
+#else
         const REAL dielectric = p->specular * fma((REAL)(0.96f), fresnel, (REAL)(0.04f));
         const REAL kd = (1.0f - p->metallic) * (1.0f - dielectric) * M_1_PI_F;
         const REAL ks = (1.0f - p->metallic) * dielectric * lobe + p->metallic * lobe * fresnel;
@@ -199,6 +215,7 @@ static NAMED(Color) NAMED(reflect)(const NAMED(Points) * p, REAL wx, REAL wy, RE
         c.green = factor * fma(p->green, base, ks);
         c.blue = factor * fma(p->blue, base, ks);
         return c;
+#endif
     }
 #endif
     factor *= M_1_PI_F;

@@ -168,6 +168,27 @@ static uint enter_children_16(__global const float_w* node, const Packet* p, uin
     return entered;
 }
 
+#if HAS_ALPHA
+// Whether a triangle of a block is there for one of the rays.
+static bool is_there_for(const Packet* p, uint ray, const PreparedBlock* b, uint lane,
+                         uint triangle ALPHA_PARAMETERS) {
+    const float3 direction = direction_of(p, ray);
+    return is_there(p->origin, direction, triangle,
+                    block_weights(b, lane, direction) ALPHA_ARGUMENTS);
+}
+
+// Of the rays that hit it, those that it is there for.
+static int16 there_for_all(const Packet* p, int16 hit, const PreparedBlock* b, uint lane,
+                           uint triangle ALPHA_PARAMETERS) {
+    if (alpha_of[triangle] == NO_ALPHA) return hit;
+    for (uint rays = lanes_16(hit); rays; rays &= rays - 1u) {
+        const uint ray = lowest(rays);
+        if (!is_there_for(p, ray, b, lane, triangle ALPHA_ARGUMENTS)) INT_LANE(hit, ray) = 0;
+    }
+    return hit;
+}
+#endif
+
 // Ends the rays that hit something, at -1; returns whether any did.
 static bool occlude_packet(BVH_PARAMETERS, Packet* p) {
     int stack[BVH_STACK];
@@ -182,22 +203,34 @@ static bool occlude_packet(BVH_PARAMETERS, Packet* p) {
         const uint mask = masks[top] & live;
         if (!mask) continue;
         if (entry < 0) {
-            const PreparedBlock block =
-                prepare_block(bvh_blocks + (~entry >> 4) * BLOCK_ROWS, p->origin);
+            __global const float_k* rows = bvh_blocks + (~entry >> 4) * BLOCK_ROWS;
+            const PreparedBlock block = prepare_block(rows, p->origin);
+#if HAS_ALPHA
+            __global const uint* names = (__global const uint*)(rows + 9);
+#endif
             const uint triangles = (uint)(~entry & 15) + 1u;
             if (popcount(mask) < triangles) {
                 for (uint rays = mask; rays; rays &= rays - 1u) {
                     const uint lane = lowest(rays);
-                    if (!lanes_k(hit_block(&block, direction_of(p, lane), LANE(p->size, lane),
-                                           LANE(p->end, lane))
-                                     .hit))
-                        continue;
+                    uint found = lanes_k(hit_block(&block, direction_of(p, lane),
+                                                   LANE(p->size, lane), LANE(p->end, lane))
+                                             .hit);
+#if HAS_ALPHA
+                    for (; found; found &= found - 1u) {
+                        const uint t = lowest(found);
+                        if (is_there_for(p, lane, &block, t, names[t] ALPHA_ARGUMENTS)) break;
+                    }
+#endif
+                    if (!found) continue;
                     live &= ~(1u << lane);
                     SET_LANE(p->end, lane, -1.0f);
                 }
             } else {
                 for (uint triangle = 0u; triangle < triangles; ++triangle) {
-                    const int16 hit = hit_triangle(&block, triangle, p).hit;
+                    int16 hit = hit_triangle(&block, triangle, p).hit;
+#if HAS_ALPHA
+                    hit = there_for_all(p, hit, &block, triangle, names[triangle] ALPHA_ARGUMENTS);
+#endif
                     const uint rays = lanes_16(hit);
                     if (!rays) continue;
                     live &= ~rays;
@@ -253,6 +286,11 @@ static void closest_hits(BVH_PARAMETERS, Packet* p, int16* triangles) {
                     for (uint lanes = found; lanes; lanes &= lanes - 1u) {
                         const uint triangle = lowest(lanes);
                         if (LANE(t, triangle) >= LANE(p->end, lane)) continue;
+#if HAS_ALPHA
+                        if (!is_there_for(p, lane, &block, triangle,
+                                          (uint)names[triangle] ALPHA_ARGUMENTS))
+                            continue;
+#endif
                         SET_LANE(p->end, lane, LANE(t, triangle));
                         INT_LANE(*triangles, lane) = names[triangle];
                         any_hit = true;
@@ -260,7 +298,11 @@ static void closest_hits(BVH_PARAMETERS, Packet* p, int16* triangles) {
                 }
             } else {
                 for (uint triangle = 0u; triangle < all; ++triangle) {
-                    const TriangleHits hits = hit_triangle(&block, triangle, p);
+                    TriangleHits hits = hit_triangle(&block, triangle, p);
+#if HAS_ALPHA
+                    hits.hit = there_for_all(p, hits.hit, &block, triangle,
+                                             (uint)names[triangle] ALPHA_ARGUMENTS);
+#endif
                     if (!lanes_16(hits.hit)) continue;
                     p->end = select(p->end, hits.t / hits.n, hits.hit);
                     *triangles = select(*triangles, (int16)(names[triangle]), hits.hit);

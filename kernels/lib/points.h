@@ -21,6 +21,11 @@ static Points_1 point_of(const Receiver* r) {
     p.metallic = r->material.base_color.w;
     p.alpha = r->material.roughness;
     p.specular = r->material.specular;
+#if HAS_REFLECTANCE
+    p.f0_red = r->material.reflectance.x;
+    p.f0_green = r->material.reflectance.y;
+    p.f0_blue = r->material.reflectance.z;
+#endif
     p.glossy = p.metallic > 0.0f || p.specular > 0.0f;
 #endif
     return p;

@@ -31,6 +31,11 @@ static void load_materials_16(__global const Material* materials, uint16 indices
         SET_LANE(p->metallic, lane, m->base_color.w);
         SET_LANE(p->alpha, lane, m->roughness);
         SET_LANE(p->specular, lane, m->specular);
+#if HAS_REFLECTANCE
+        SET_LANE(p->f0_red, lane, m->reflectance.x);
+        SET_LANE(p->f0_green, lane, m->reflectance.y);
+        SET_LANE(p->f0_blue, lane, m->reflectance.z);
+#endif
 #endif
     }
     if (!alike) return;
@@ -41,6 +46,11 @@ static void load_materials_16(__global const Material* materials, uint16 indices
     p->metallic = (float16)(p->metallic.s0);
     p->alpha = (float16)(p->alpha.s0);
     p->specular = (float16)(p->specular.s0);
+#if HAS_REFLECTANCE
+    p->f0_red = (float16)(p->f0_red.s0);
+    p->f0_green = (float16)(p->f0_green.s0);
+    p->f0_blue = (float16)(p->f0_blue.s0);
+#endif
 #endif
 }
 
@@ -73,7 +83,7 @@ static Receivers_16 load_receivers_16(Tiles tiles, Pass pass, uint group, Camera
     r.from.y = r.points.py + r.from.gy * offset;
     r.from.z = r.points.pz + r.from.gz * offset;
     r.from.reflects = zero;
-    load_materials_16(materials, select((uint16)(0u), as_uint16(rows[13]), as_uint16(r.valid)),
+    load_materials_16(materials, select((uint16)(0u), as_uint16(rows[15]), as_uint16(r.valid)),
                       &r.points);
     r.points.red = select(zero, r.points.red, r.valid);
     r.points.green = select(zero, r.points.green, r.valid);
@@ -126,6 +136,11 @@ static Points_16 permute_points(const Points_16* all, uint16 lanes) {
     PERMUTE(metallic);
     PERMUTE(alpha);
     PERMUTE(specular);
+#if HAS_REFLECTANCE
+    PERMUTE(f0_red);
+    PERMUTE(f0_green);
+    PERMUTE(f0_blue);
+#endif
     p.glossy = all->glossy;
 #endif
     return p;

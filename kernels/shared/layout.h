@@ -10,14 +10,23 @@
 #include "shared/light_tree.h"
 #include "shared/material.h"
 #include "shared/surface.h"
+#include "shared/texture.h"
 #include "shared/tiles.h"
 
 // clang-format off
 #define SHARED_FIELDS(X)                                                                           \
     X(Camera, origin) X(Camera, right) X(Camera, up) X(Camera, forward)                            \
     X(Surface, position) X(Surface, normal) X(Surface, geometric) X(Surface, triangle)             \
-    X(Surface, material) X(Surface, front)                                                         \
+    X(Surface, material) X(Surface, front) X(Surface, shading)                                     \
+    X(Texture, first) X(Texture, width) X(Texture, height) X(Texture, levels) X(Texture, format)   \
+    X(Texture, wrap_u) X(Texture, wrap_v) X(Texture, magnified_linear)                             \
+    X(Texture, minified_linear) X(Texture, between)                                                \
+    X(TextureMap, u) X(TextureMap, v) X(TextureMap, texture) X(TextureMap, set)                    \
+    X(TextureMap, scale)                                                                           \
     X(Material, base_color) X(Material, emission) X(Material, roughness) X(Material, specular)     \
+    X(Material, reflectance) X(Material, alpha) X(Material, cutoff) X(Material, unlit)              \
+    X(AlphaTriangle, first) X(AlphaTriangle, second) X(AlphaTriangle, alphas)                      \
+    X(AlphaTriangle, texture)                                                                      \
     X(Light, position) X(Light, axis) X(Light, edge) X(Light, emission)                            \
     X(Tiles, width) X(Tiles, height) X(Tiles, size) X(Tiles, columns) X(Tiles, first)              \
     X(Tiles, count)                                                                                \

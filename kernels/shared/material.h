@@ -8,14 +8,23 @@ SHARED_BEGIN
 
 /// glTF's metallic-roughness material with the factor of KHR_materials_specular.
 typedef struct Material {
-    float4 base_color;  // rgb: linear; w: metallic, 0 to 1
-    float4 emission;    // rgb: radiance, cd/m2, emitted by the front side; w: 1 if both sides emit
-    float roughness;    // GGX alpha, at least SMALLEST_ALPHA
-    float specular;     // 0 to 1; a material with metallic and specular 0 is Lambert's
-    float padding0;
-    float padding1;
+    float4 base_color;   // rgb: linear; w: metallic, 0 to 1
+    float4 emission;     // rgb: radiance, cd/m2, emitted by the front side; w: 1 if both sides emit
+    float4 reflectance;  // rgb: of the dielectric, at normal incidence, for `specular` 1
+    float roughness;     // GGX alpha, at least SMALLEST_ALPHA
+    float specular;      // 0 to 1; a material with metallic and specular 0 is Lambert's
+    float alpha;         // 0 to 1: how much of it is there
+    float cutoff;        // above 0: it is there where alpha is not below; below 0: as much as alpha
+                         // says; 0: all of it is there
+    uint unlit;          // 1: the emission is its colour and gives no light
+    uint padding0;
+    uint padding1;
+    uint padding2;
 } Material;
-SHARED_SIZE(Material, 48)
+SHARED_SIZE(Material, 80)
+
+/// Of a dielectric with the index of refraction 1.5.
+#define USUAL_REFLECTANCE 0.04f
 
 /// Below this GGX alpha, single precision cannot resolve the lobe (1 - cos of its width is 1e-6).
 #define SMALLEST_ALPHA 1e-3f

@@ -15,7 +15,8 @@ typedef struct Surface {
     uint triangle;     // index in Scene::indices / 3
     uint material;     // index in Scene::materials
     uint front;        // 1 where the viewer is on the side that the triangle's winding faces
-    uint padding;
+    uint shading;      // index of what it shades with, on the device: `material`, or behind the
+                       // scene's materials one of its own where textures or colours vary it
 } Surface;
 SHARED_SIZE(Surface, 64)
 

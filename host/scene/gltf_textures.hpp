@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "scene/gltf_parse.hpp"
+
+namespace manylight {
+
+/// Fills the scene's maps, textures and texels with what its materials name; `used` says which
+/// materials are rendered, of which the images are decoded. Returns the n of the TEXCOORD_n that
+/// each of Scene::coordinates holds. Throws InputError for images that cannot be read or decoded.
+[[nodiscard]] std::vector<unsigned> load_textures(const GltfFile& file,
+                                                  const tinygltf::Model& model,
+                                                  const std::vector<bool>& used, Scene& scene);
+
+}  // namespace manylight
