@@ -274,7 +274,11 @@ TEST(lights, reference_brdf_is_physical) {
     for (const float alpha : {0.05f, 0.3f, 1.0f})
         for (const float metallic : {0.f, 0.5f, 1.f})
             for (const double angle : {0.1, 0.8, 1.3}) {
-                const Material m{float4(1, 1, 1, metallic), float4(0), alpha, 1, 0, 0};
+                Material m{};
+                m.base_color = float4(1, 1, 1, metallic);
+                m.reflectance = float4(glm::vec3(USUAL_REFLECTANCE), 0);
+                m.roughness = alpha;
+                m.specular = 1;
                 const glm::dvec3 wo(std::sin(angle), 0, std::cos(angle));
                 double sum = 0;
                 constexpr int steps = 400;

@@ -114,7 +114,11 @@ TEST(reflections, directions_follow_their_density) {
     for (const float alpha : {0.02f, 0.1f, 0.4f, 1.f})
         for (const double angle : {0.0, 0.7, 1.3, 1.5}) {
             SCOPED_TRACE(fmt::format("alpha {}, {} rad", alpha, angle));
-            const Material m{float4(1, 1, 1, 1), float4(0), alpha, 1, 0, 0};
+            Material m{};
+            m.base_color = float4(1, 1, 1, 1);
+            m.reflectance = float4(glm::vec3(USUAL_REFLECTANCE), 0);
+            m.roughness = alpha;
+            m.specular = 1;
             const glm::dvec3 n = glm::normalize(glm::dvec3(0.3, -0.5, -0.8));
             const glm::dvec3 across = glm::normalize(glm::cross(n, glm::dvec3(0.1, 1, 0.3)));
             const glm::dvec3 wo = std::cos(angle) * n + std::sin(angle) * across;

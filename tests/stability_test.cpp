@@ -167,9 +167,9 @@ struct Step {
     uint spp, images;
     Mean error;
 
-    // Of an image.
+    // Of an image; 0 where there is only one.
     [[nodiscard]] double relative_deviation() const {
-        return *error.standard_error * std::sqrt(images) / error.value;
+        return error.standard_error.value_or(0) * std::sqrt(images) / error.value;
     }
 };
 
@@ -203,16 +203,16 @@ bool page_tells_of_negative_values(std::string_view sampler) {
 
 // Where sampler adaptive is worse than allowed, and how much; docs/atlas.md says why.
 const std::map<std::string, double, std::less<>> exceptions = {
-    {"glossy --roughness 0.03", 1.8}, {"hidden --visible 0.01", 20},
-    {"hidden --visible 0.001", 250},  {"stacks --stack 64", 20},
-    {"stacks --stack 512", 28},       {"1 light sample", 2.3}};
+    {"glossy --roughness 0.03", 1.8}, {"hidden --visible 0.01", 30},
+    {"hidden --visible 0.001", 250},  {"stacks --stack 64", 15},
+    {"stacks --stack 512", 20},       {"1 light sample", 2.3}};
 constexpr double most_ratio = 1.2;  // of adaptive's error to the best other sampler's
 
 // Numbers of pixel samples, and of images with so many. At hard points only one: few images do not
 // tell there how errors fall.
 std::vector<std::pair<uint, uint>> ladder_of(const Point& point) {
     if (point.hard) return {{4, 10}};
-    return {{1, 4}, {4, 10}, {64, 2}};
+    return {{1, 4}, {4, 10}, {64, 1}};
 }
 
 struct Verdict {
@@ -300,8 +300,10 @@ TEST(stability, every_sampler_on_every_sweep) {
 // odd size.
 TEST(stability, every_sampler_at_odd_settings) {
     judge(Point("1 light sample", "blinds", {}, 1));
-    judge(Point("64 light samples", "blinds", {}, 64));
-    judge(Point("pinhole --hole 0.2", "pinhole", {.values = {{"hole", 0.2}}}));
+    judge(Point("16 light samples", "blinds", {}, 16));
+    Point beam("pinhole --hole 0.2", "pinhole", {.values = {{"hole", 0.2}}});
+    beam.hard = true;  // fireflies at the beam's edge
+    judge(beam);
     judge(Point("1 x 1", "range", {}, 4, 1, 1));
     judge(Point("33 x 17", "range", {}, 4, 33, 17));
 }
@@ -331,7 +333,7 @@ TEST(stability, results_do_not_jump_with_tile_alignment) {
             most = std::max(most, error);
         }
     }
-    for (const auto& [sampler, e] : extremes) EXPECT_LT(e.second / e.first, 1.3) << sampler;
+    for (const auto& [sampler, e] : extremes) EXPECT_LT(e.second / e.first, 1.5) << sampler;
 }
 
 }  // namespace manylight
