@@ -316,7 +316,7 @@ class CommandTest(unittest.TestCase):
                 ([*pixel, "-o", "a.png", "--json", "a.png"], ["--json", "a.png", "--output"]),
                 ([*pixel, "-o", "x.png"], ["--output", "x.png", "scene"]),
                 ([*pixel, "--json", "x.png"], ["--json", "x.png", "scene"]),
-                ([*pixel, "--memory", "80M"], ["--memory", "80.0 MiB", "512 x 512", "at once"]),
+                ([*pixel, "--memory", "130M"], ["--memory", "130.0 MiB", "512 x 512", "at once"]),
                 ([*pixel, "--camera", "top"], ["--camera", "top"])):
             with self.subTest(arguments=arguments):
                 self.refuse("inspect", "x.png", *arguments, words=words)

@@ -208,10 +208,12 @@ const std::map<std::string, double, std::less<>> exceptions = {
     {"stacks --stack 512", 20},       {"1 light sample", 2.3}};
 constexpr double most_ratio = 1.2;  // of adaptive's error to the best other sampler's
 
+constexpr std::size_t few_lights = 200;
+
 // Numbers of pixel samples, and of images with so many. At hard points only one: few images do not
-// tell there how errors fall.
+// tell there how errors fall; nor with many lights, to save time.
 std::vector<std::pair<uint, uint>> ladder_of(const Point& point) {
-    if (point.hard) return {{4, 8}};
+    if (point.hard || point.lights() > few_lights) return {{4, 8}};
     return {{1, 4}, {4, 8}, {64, 1}};
 }
 
@@ -261,7 +263,8 @@ double judge(const Point& point) {
         else
             EXPECT_GT(v.probability, 1e-6);
         if (v.slope && !sampler.biased) {
-            // A tenth and four deviations: of hundreds of slopes, all of few images, none is beyond.
+            // A tenth and four deviations: of hundreds of slopes, all of few images, none is
+            // beyond.
             EXPECT_LT(v.slope->value - 4 * *v.slope->standard_error, -0.9);
         }
         if (sampler.name == "adaptive")
