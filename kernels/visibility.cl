@@ -13,10 +13,10 @@
 // Adds the rays of a pass to the counts of its cells. One quadrant per work-item.
 KERNEL void visibility_learn(Pass pass, __global const uint* draws,
                              __global const uint* draw_counts, __global const uint* pixel_packets,
-                             __global const float* rays, __global uint* counts) {
+                             __global const float* rays, uint light_count, __global uint* counts) {
     const uint quadrant = get_global_id(0);
     if (quadrant >= 4u * pass.tile_count) return;
-    __global uint* own = counts + quadrant_slots(4u * pass.first_tile + quadrant);
+    __global uint* own = counts + quadrant_slots(4u * pass.first_tile + quadrant, light_count);
     for (uint group = quadrant * pass.count; group < (quadrant + 1u) * pass.count; ++group) {
         __global const uint* first_packets = pixel_packets + 32u * group;
         for (uint draw = 0u; draw < draw_counts[group]; ++draw) {
@@ -60,13 +60,14 @@ static float16 sum_all(float16 quarters) {
 // work-item.
 KERNEL void visibility_sum(Tiles tiles, __global const uint* cut_sizes,
                            __global const Trials* probes, __global const uint16* counts,
-                           __global Trials* totals) {
+                           uint light_count, __global Trials* totals) {
     const uint tile = get_global_id(0) / CUT_CAPACITY;
     const uint slot = get_global_id(0) % CUT_CAPACITY;
     if (tile >= tiles.count || slot >= cut_sizes[tile]) return;
     CellTrials sum = {(float16)(0.0f), (float16)(0.0f)};
     for (uint quadrant = 4u * tile; quadrant < 4u * tile + 4u; ++quadrant) {
-        const CellTrials t = load_trials(counts[quadrant_slots(quadrant) / 16u + slot]);
+        const CellTrials t =
+            load_trials(counts[quadrant_slots(quadrant, light_count) / 16u + slot]);
         sum.traced += t.traced;
         sum.passed += t.passed;
     }
@@ -186,17 +187,19 @@ static float16 adjust(Odds odds, float16 share) {
 
 // visible[...] = V^ of every cell: from the tile's mean to the mean of GROUP slots, the slot, and
 // then of 16 x 16, 8 x 8 and 4 x 4 pixels: each shrinks towards the one before, adjusted to what
-// the part sees of all slots. One quadrant (16 x 16 pixels) per work-item.
-KERNEL void visibility_estimate(Tiles tiles, __global const uint* cut_sizes,
+// the part sees of all slots. Of tile_count tiles from first_tile on; visible[] holds these alone.
+// One quadrant (16 x 16 pixels) per work-item.
+KERNEL void visibility_estimate(uint first_tile, uint tile_count, __global const uint* cut_sizes,
                                 __global const Trials* shared, __global const uint16* counts,
-                                __global float16* visible) {
-    const uint tile = get_global_id(0) / 4u;
-    if (tile >= tiles.count) return;
+                                uint light_count, __global float16* visible) {
+    const uint quadrant = get_global_id(0);
+    if (quadrant >= 4u * tile_count) return;
+    const uint tile = first_tile + quadrant / 4u;
     const uint size = cut_sizes[tile];
     __global const Trials* own = shared + tile * CUT_CAPACITY;
-    const ulong first = quadrant_slots((uint)get_global_id(0)) / 16u;
-    __global const uint16* own_counts = counts + first;
-    __global float16* own_visible = visible + first;
+    __global const uint16* own_counts =
+        counts + quadrant_slots(4u * first_tile + quadrant, light_count) / 16u;
+    __global float16* own_visible = visible + quadrant_slots(quadrant, light_count) / 16u;
     const float16 zero = (float16)(0.0f);
     Trials all = {0.0f, 0.0f};
     for (uint slot = 0u; slot < size; ++slot) add_trials(&all, own[slot]);

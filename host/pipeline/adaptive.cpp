@@ -31,7 +31,7 @@ Adaptive::Adaptive(Device& device, const DeviceScene& scene, unsigned most_tiles
       adaptive_stage_(device, scene, packets_for(most_tiles, most_light_samples),
                       std::size_t{most_tiles} * CELLS_PER_TILE * most_places),
       cuts_(device, most_tiles),
-      visibility_(device, most_tiles),
+      visibility_(device, scene.light_count, most_tiles, std::min(most_tiles, most_in_work)),
       light_count_(scene.light_count),
       width_(width) {}
 
@@ -41,7 +41,7 @@ void Adaptive::start(const Tiles& tiles, const Buffer<Surface>& surfaces, uint s
     cut_stage_.make(tiles, surfaces, options, cuts_);
     tiles_ = tiles;
     fresh_ = true;
-    is_estimated_ = false;
+    is_summed_ = false;
     drawn_pixels_ = 0;
     factor_ = 0;
 }
@@ -63,16 +63,17 @@ void Adaptive::draw(const Tiles& tiles, const PixelSample& sample, uint light_sa
 }
 
 TileKnowledge Adaptive::knowledge(uint tile) {
-    estimate();
+    sum_up();
+    visibility_stage_.estimate(tile, 1, cuts_, visibility_);
     const float samples = samples_of_round(light_samples_);
     TileKnowledge out{{}, {}, {samples, factor_ * samples, exposure_}, rounds_for(light_samples_)};
-    const std::size_t begin = std::size_t{tile} * CUT_CAPACITY;
-    out.cut = cuts_.nodes.download(begin, cuts_.sizes.download(tile, 1)[0]);
-    const std::vector<float> visible =
-        visibility_.visible.download(begin * CELLS_PER_TILE, CUT_CAPACITY * CELLS_PER_TILE);
+    out.cut =
+        cuts_.nodes.download(std::size_t{tile} * CUT_CAPACITY, cuts_.sizes.download(tile, 1)[0]);
+    const std::size_t slots = Visibility::slots(light_count_);
+    const std::vector<float> visible = visibility_.visible.download(0, slots * CELLS_PER_TILE);
     for (std::size_t slot = 0; slot < out.cut.size(); ++slot)
         for (std::size_t cell = 0; cell < CELLS_PER_TILE; ++cell)
-            out.visible.push_back(visible[(cell / 16 * CUT_CAPACITY + slot) * 16 + cell % 16]);
+            out.visible.push_back(visible[(cell / 16 * slots + slot) * 16 + cell % 16]);
     return out;
 }
 
@@ -80,17 +81,18 @@ TileKnowledge Adaptive::knowledge(uint tile) {
 bool Adaptive::pass_over(const Tiles& tiles, Pass pass, const PixelSample& sample,
                          uint light_samples, const Buffer<Surface>& surfaces, Estimates& estimates,
                          const std::function<bool(const Pass&)>& done) {
-    estimate();
+    sum_up();
     light_samples_ = light_samples;
     const uint rounds = rounds_for(light_samples);
     const float samples = samples_of_round(light_samples);
     pass.packets = static_cast<uint>(packets_per_pixel(light_samples));
     const std::size_t tile_packets = std::size_t{CELLS_PER_TILE} * pass.count * pass.packets;
     const uint tiles_at_once =
-        static_cast<uint>(std::max<std::size_t>(many_packets / tile_packets, 1));
+        static_cast<uint>(std::clamp<std::size_t>(many_packets / tile_packets, 1, most_in_work));
     const Budget budget{samples, factor_ * samples, exposure_};
     for (; pass.first_tile < tiles.count; pass.first_tile += tiles_at_once) {
         pass.tile_count = std::min(tiles_at_once, tiles.count - pass.first_tile);
+        visibility_stage_.estimate(pass.first_tile, pass.tile_count, cuts_, visibility_);
         for (uint round = 0; round < rounds; ++round) {
             Pass part = pass;
             part.number += 2 * round;
@@ -100,17 +102,17 @@ bool Adaptive::pass_over(const Tiles& tiles, Pass pass, const PixelSample& sampl
         }
         if (!done(pass)) return false;
     }
-    is_estimated_ = false;
+    is_summed_ = false;
     drawn_pixels_ = std::size_t{tiles.count} * CELLS_PER_TILE * pass.count;
     return true;
 }
 
 // Brings what is known up to the last pass.
-void Adaptive::estimate() {
-    if (is_estimated_) return;
-    visibility_stage_.estimate(tiles_, cuts_, visibility_);
+void Adaptive::sum_up() {
+    if (is_summed_) return;
+    visibility_stage_.sum(tiles_, cuts_, visibility_);
     if (drawn_pixels_ > 0) set_budget(adaptive_stage_.expectations(drawn_pixels_));
-    is_estimated_ = true;
+    is_summed_ = true;
 }
 
 // Packets of a launch at most: one tile's pass at least.

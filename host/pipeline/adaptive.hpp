@@ -36,12 +36,14 @@ class Adaptive {
     [[nodiscard]] TileKnowledge knowledge(uint tile);
 
     /// Bytes on the device for each tile, and besides.
-    [[nodiscard]] static constexpr std::size_t tile_bytes() {
-        return Cuts::tile_bytes() + Visibility::tile_bytes() +
+    [[nodiscard]] static constexpr std::size_t tile_bytes(std::size_t lights) {
+        return Cuts::tile_bytes() + Visibility::tile_bytes(lights) +
                CELLS_PER_TILE * most_places * sizeof(Expectation);
     }
-    [[nodiscard]] static std::size_t fixed_bytes(std::size_t tiles, uint light_samples) {
-        return packets_for(tiles, light_samples) * AdaptiveStage::packet_bytes();
+    [[nodiscard]] static std::size_t fixed_bytes(std::size_t lights, std::size_t tiles,
+                                                 uint light_samples) {
+        return packets_for(tiles, light_samples) * AdaptiveStage::packet_bytes() +
+               std::min<std::size_t>(tiles, most_in_work) * Visibility::work_bytes(lights);
     }
 
   private:
@@ -49,10 +51,11 @@ class Adaptive {
                    const Buffer<Surface>& surfaces, Estimates& estimates,
                    const std::function<bool(const Pass&)>& done);
     static std::size_t packets_for(std::size_t tiles, uint light_samples);
-    void estimate();
+    void sum_up();
     void set_budget(const std::vector<Expectation>& pixels);
 
-    static constexpr uint most_places = 8;  // of a cell in one pass
+    static constexpr uint most_places = 8;     // of a cell in one pass
+    static constexpr uint most_in_work = 512;  // tiles, whose V^ is held
 
     CutStage cut_stage_;
     VisibilityStage visibility_stage_;
@@ -64,7 +67,7 @@ class Adaptive {
     uint light_samples_ = 1;  // of the last draw
     Tiles tiles_{};           // of the batch
     bool fresh_ = true;       // nothing was learned yet
-    bool is_estimated_ = false;
+    bool is_summed_ = false;
     std::size_t drawn_pixels_ = 0;  // of the last pass
     float factor_ = 0;              // see Budget; for one draw on average
     float exposure_ = 0;

@@ -107,9 +107,10 @@ Plan make_plan(const DeviceInfo& device, const Scene& scene, const WideBvh& bvh,
         sizeof(Surface) + (scene.varies_materials() ? sizeof(Material) : 0);
     std::size_t tile_bytes =
         tile_items * (surface_bytes * (two_surfaces ? 2 : 1) + 2 * sizeof(float4));
-    tile_bytes += cuts ? Adaptive::tile_bytes() : tile_items * SampleStage::item_bytes();
+    tile_bytes += cuts ? Adaptive::tile_bytes(lights) : tile_items * SampleStage::item_bytes();
     std::size_t tile_matrix = 0;
-    std::size_t ray_bytes = cuts ? Adaptive::fixed_bytes(tiles.count, options.most_samples()) : 0;
+    std::size_t ray_bytes =
+        cuts ? Adaptive::fixed_bytes(lights, tiles.count, options.most_samples()) : 0;
     if (plan.clusters) {
         tile_bytes += Clustering::tile_bytes(options.clusters, lights);
         ray_bytes = ContributionStage::ray_bytes(lights);

@@ -2,11 +2,12 @@
 #include "stages/visibility.hpp"
 
 namespace manylight {
-Visibility::Visibility(Device& device, std::size_t tiles)
-    : counts(device.allocate<uint>(tiles * CUT_CAPACITY * CELLS_PER_TILE)),
+
+Visibility::Visibility(Device& device, std::size_t lights, std::size_t tiles, std::size_t in_work)
+    : counts(device.allocate<uint>(tiles * slots(lights) * CELLS_PER_TILE)),
       totals(device.allocate<Trials>(tiles * CUT_CAPACITY)),
       shared(device.allocate<Trials>(tiles * CUT_CAPACITY)),
-      visible(device.allocate<float>(tiles * CUT_CAPACITY * CELLS_PER_TILE)) {}
+      visible(device.allocate<float>(in_work * slots(lights) * CELLS_PER_TILE)) {}
 
 Arguments Visibility::arguments() const {
     return Arguments()
@@ -29,15 +30,22 @@ VisibilityStage::VisibilityStage(Device& device, const DeviceScene& scene)
 
 void VisibilityStage::learn(const Pass& pass, const Arguments& draws, Visibility& out) {
     learn_.launch(std::size_t{pass.tile_count} * 4,
-                  Arguments(draws).set(out.arguments()).set("pass", pass));
+                  Arguments(scene_).set(draws).set(out.arguments()).set("pass", pass));
 }
 
-void VisibilityStage::estimate(const Tiles& tiles, const Cuts& cuts, Visibility& out) {
+void VisibilityStage::sum(const Tiles& tiles, const Cuts& cuts, Visibility& out) {
     const Arguments arguments =
         Arguments(scene_).set(cuts.arguments()).set(out.arguments()).set("tiles", tiles);
     sum_.launch(std::size_t{tiles.count} * CUT_CAPACITY, arguments);
     share_.launch(std::size_t{tiles.count} * CUT_CAPACITY, arguments);
-    estimate_.launch(std::size_t{tiles.count} * 4, arguments);
+}
+
+void VisibilityStage::estimate(uint first, uint count, const Cuts& cuts, Visibility& out) {
+    estimate_.launch(std::size_t{count} * 4, Arguments(scene_)
+                                                 .set(cuts.arguments())
+                                                 .set(out.arguments())
+                                                 .set("first_tile", first)
+                                                 .set("tile_count", count));
 }
 
 }  // namespace manylight

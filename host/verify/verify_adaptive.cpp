@@ -31,6 +31,7 @@ struct Run {
     std::vector<uint> nodes, sizes;  // the cuts'
     std::vector<Trials> probes;
     std::vector<std::vector<DrawnNode>> first_drawn, drawn;  // [pixel of the pass]
+    std::size_t slots = 0;                                   // of a tile in what follows
     std::vector<uint> counts;                                // after the first pass
     std::vector<float> visible;                              // likewise
     std::vector<float4> estimates;
@@ -48,17 +49,20 @@ struct Run {
         nodes = cuts.nodes.download();
         sizes = cuts.sizes.download();
         probes = cuts.probes.download();
-        Visibility visibility(device, tiles.count);
+        slots = Visibility::slots(scene.light_count);
+        Visibility visibility(device, scene.light_count, tiles.count, tiles.count);
         VisibilityStage learn(device, scene);
         visibility.counts.clear();
-        learn.estimate(tiles, cuts, visibility);
+        learn.sum(tiles, cuts, visibility);
+        learn.estimate(0, tiles.count, cuts, visibility);
         AdaptiveStage stage(device, scene, pass_pixels(first) * first.packets, pass_pixels(first));
         Estimates sums{device.allocate<float4>(item_count(tiles)), {}};
         stage.draw(tiles, first, {budget.samples, 0, 0}, sample, points, cuts, visibility, 1, true,
                    sums);
         first_drawn = stage.drawn(first);
         learn.learn(first, stage.draws(), visibility);
-        learn.estimate(tiles, cuts, visibility);
+        learn.sum(tiles, cuts, visibility);
+        learn.estimate(0, tiles.count, cuts, visibility);
         counts = visibility.counts.download();
         visible = visibility.visible.download();
         stage.draw(tiles, second, budget, sample, points, cuts, visibility, 1, true, sums);
@@ -67,8 +71,8 @@ struct Run {
     }
 
     // Where a slot's cell is in counts and visible.
-    [[nodiscard]] static std::size_t place(std::size_t tile, std::size_t slot, std::size_t cell) {
-        return ((4 * tile + cell / 16) * CUT_CAPACITY + slot) * 16 + cell % 16;
+    [[nodiscard]] std::size_t place(std::size_t tile, std::size_t slot, std::size_t cell) const {
+        return ((4 * tile + cell / 16) * slots + slot) * 16 + cell % 16;
     }
     // The item of a pixel of a pass.
     [[nodiscard]] static std::size_t item(const Pass& pass, std::size_t pixel) {
@@ -159,13 +163,13 @@ Check check_visibility(const Run& run, const LightTree& tree) {
         for (uint slot = 0; slot < run.sizes[tile]; ++slot)
             for (uint cell = 0; cell < 64; ++cell) {
                 const reference::Rays& expected = counts[tile][64 * slot + cell];
-                const uint found = run.counts[Run::place(tile, slot, cell)];
+                const uint found = run.counts[run.place(tile, slot, cell)];
                 const std::string name = fmt::format("tile {}, slot {}, cell {}", tile, slot, cell);
                 check.compare_exact(
                     (found & 0xffff) == expected.traced && found >> 16 == expected.passed,
                     name + ": rays");
                 const double v = visible[64 * slot + cell];
-                check.compare(std::abs(run.visible[Run::place(tile, slot, cell)] - v),
+                check.compare(std::abs(run.visible[run.place(tile, slot, cell)] - v),
                               (64 + rays / 8) * epsilon * v, name);
             }
     }
@@ -196,7 +200,7 @@ Check check_weights(const Run& run, const LightTree& tree, const Scene& scene, c
                 {}};
             for (uint slot = 0; slot < run.sizes[tile]; ++slot)
                 pixel.visible.push_back(
-                    run.visible[Run::place(tile, slot, 16 * (quadrant % 4) + cell)]);
+                    run.visible[run.place(tile, slot, 16 * (quadrant % 4) + cell)]);
             pixels.push_back(pixel);
             numbers.push_back(p);
         }
@@ -244,7 +248,7 @@ Check check_samples(const Run& run, const LightTree& tree, const Scene& scene,
         const reference::Point point{scene, camera, run.surfaces[item]};
         const glm::uvec2 at = item_pixel(run.tiles, item);
         const auto visibility = [&](uint slot) {
-            return double{run.visible[Run::place(tile, slot, cell)]};
+            return double{run.visible[run.place(tile, slot, cell)]};
         };
         glm::dvec3 sum(0);
         double magnitude = 0;
@@ -260,7 +264,7 @@ Check check_samples(const Run& run, const LightTree& tree, const Scene& scene,
                 run.hit(other) ? &run.surfaces[other] : nullptr, {0.5, 0.5}, {}};
             for (uint slot = 0; slot < run.sizes[tile]; ++slot)
                 pixel.visible.push_back(
-                    run.visible[Run::place(tile, slot, 16 * (quadrant % 4) + c)]);
+                    run.visible[run.place(tile, slot, 16 * (quadrant % 4) + c)]);
             group.push_back(pixel);
         }
         const reference::PixelDraws own = reference::draw_nodes(

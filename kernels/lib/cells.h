@@ -38,6 +38,8 @@ static uint pass_groups(Pass pass) { return pass.tile_count * 4u * pass.count; }
 static uint group_packets(Pass pass, uint group) { return 16u * pass.packets * group; }
 
 // Where slot 0 of a quadrant begins in arrays over slots and cells; `quadrant` counts over tiles.
-static ulong quadrant_slots(uint quadrant) { return 16ul * CUT_CAPACITY * quadrant; }
+static ulong quadrant_slots(uint quadrant, uint light_count) {
+    return 16ul * min(light_count, (uint)CUT_CAPACITY) * quadrant;
+}
 
 #endif

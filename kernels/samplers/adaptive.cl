@@ -215,8 +215,8 @@ KERNEL void adaptive_draw(Tiles tiles, Camera camera, Pass pass, Budget budget,
                           __global Expectation* expectations) {
     const uint group = get_global_id(0);
     if (group >= pass_groups(pass)) return;
-    const uint quadrant = 4u * pass.first_tile + group / pass.count;
-    const uint tile = quadrant / 4u;
+    const uint quadrant = group / pass.count;  // of the run
+    const uint tile = pass.first_tile + quadrant / 4u;
     const Receivers_16 receivers =
         load_receivers_16(tiles, pass, group, camera, surfaces, materials);
     const uint4 shifts =
@@ -230,7 +230,7 @@ KERNEL void adaptive_draw(Tiles tiles, Camera camera, Pass pass, Budget budget,
     uint16 counts = (uint16)(0u);  // of the pixels' draws
     uint size = 0u;                // of all of them
     if (lanes_16(receivers.valid)) {
-        __global const float16* own_visible = visible + quadrant_slots(quadrant) / 16u;
+        __global const float16* own_visible = visible + quadrant_slots(quadrant, light_count) / 16u;
         __global const uint* cut = cut_nodes + tile * CUT_CAPACITY;
         const uint cut_size = cut_sizes[tile];
         if (cut_size == light_count)

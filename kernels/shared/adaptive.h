@@ -14,7 +14,7 @@ SHARED_BEGIN
 #define CELLS_PER_TILE 64
 
 /// The nodes of a tile's cut are its slots 0 to CUT_CAPACITY - 1 at most; arrays over slots and
-/// cells are [((4 tile + quadrant) * CUT_CAPACITY + slot) * 16 + cell].
+/// cells are [((4 tile + quadrant) * slots + slot) * 16 + cell], slots = min(lights, CUT_CAPACITY).
 #define CUT_CAPACITY 256
 
 /// What shadow rays said about a slot of a tile: how many were traced, and how many passed.
