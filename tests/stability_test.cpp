@@ -300,6 +300,26 @@ TEST(stability, every_sampler_on_every_sweep) {
     EXPECT_GT(seen, points / 3);
 }
 
+// Every built-in scene as it is usually, but for city's lights, of which there are too many.
+TEST(stability, adaptive_is_unbiased_on_every_scene) {
+    for (const Builtin& scene : all_builtins()) {
+        BuiltinOptions options;
+        if (scene.name == "city") options.values["lights"] = 10'000;
+        Point point(std::string(scene.name), std::string(scene.name), options);
+        const std::vector<Image> references = point.references();
+        Reference reference(references[0].width, references[0].height, point.is_exact());
+        for (const Image& image : references) reference.add(image, 0);
+        const Image truth = reference.image();
+        const Runs expected(references, truth, 0);
+        for (const uint light_samples : {1u, 4u, 16u}) {
+            point.light_samples = light_samples;
+            const Runs runs(point.render("adaptive", 2, 24), truth, 0);
+            EXPECT_GT(runs.probability(expected), 1e-6)
+                << scene.name << ", " << light_samples << " light samples";
+        }
+    }
+}
+
 // Difficulties that are not the scene's: few and many light samples, images of one pixel and of an
 // odd size.
 TEST(stability, every_sampler_at_odd_settings) {

@@ -98,6 +98,31 @@ void expect_color(const Material& material, glm::vec3 color, float tolerance = 1
     for (int c = 0; c < 3; ++c) EXPECT_NEAR(material.base_color[c], color[c], tolerance);
 }
 
+// Adds an opaque blue square a unit behind the scene's, and the sun behind the camera: what it sees
+// of the back is lit through the front.
+void add_blue_behind(Scene& scene) {
+    Material behind = scene.materials[0];
+    behind.base_color = float4(0, 0, 1, 0);
+    behind.cutoff = 0;
+    behind.alpha = 1;
+    scene.materials.push_back(behind);
+    if (!scene.maps.empty())
+        scene.maps.resize(MAP_KIND_COUNT * 2, {float4(0), float4(0), NO_TEXTURE, 0, 0, 0});
+    for (std::uint32_t k = 0; k < 4; ++k) {
+        scene.vertices.push_back(scene.vertices[k] - glm::vec3(0, 0, 1));
+        scene.coordinates[0].push_back(scene.coordinates[0][k]);
+    }
+    for (const std::uint32_t k : {4, 5, 6, 4, 6, 7}) scene.indices.push_back(k);
+    scene.triangle_materials.insert(scene.triangle_materials.end(), {1, 1});
+    find_alpha(scene);
+    Light sun{};
+    sun.position.w = LIGHT_DIRECTIONAL;
+    sun.axis = float4(0, 0, -1, 0);
+    sun.emission = float4(1, 1, 1, 0);
+    scene.lights = {sun};
+    add_emitters(scene, 0);
+}
+
 }  // namespace
 
 // Which texel is where; 188 encodes 0.5029 (IEC 61966-2-1).
@@ -513,26 +538,9 @@ TEST(textures, mask_in_every_ray) {
     const std::uint8_t hole[] = {255, 0, 0, 127}, whole[] = {255, 0, 0, 128};
     Scene scene = square();
     add_texture(scene, MAP_BASE_COLOR, image_of(2, {hole, whole}));
-    Material behind = scene.materials[0];
-    behind.base_color = float4(0, 0, 1, 0);
     scene.materials[0].cutoff = 0.5f;
-    scene.materials.push_back(behind);
-    scene.maps.resize(MAP_KIND_COUNT * 2, {float4(0), float4(0), NO_TEXTURE, 0, 0, 0});
-    for (std::uint32_t k = 0; k < 4; ++k) {
-        scene.vertices.push_back(scene.vertices[k] - glm::vec3(0, 0, 1));
-        scene.coordinates[0].push_back(scene.coordinates[0][k]);
-    }
-    for (const std::uint32_t k : {4, 5, 6, 4, 6, 7}) scene.indices.push_back(k);
-    scene.triangle_materials.insert(scene.triangle_materials.end(), {1, 1});
-    find_alpha(scene);
+    add_blue_behind(scene);
     ASSERT_EQ(scene.alpha_triangles.size(), 2u);
-    // The sun is behind the camera: what it sees of the back is lit through the holes.
-    Light sun{};
-    sun.position.w = LIGHT_DIRECTIONAL;
-    sun.axis = float4(0, 0, -1, 0);
-    sun.emission = float4(1, 1, 1, 0);
-    scene.lights = {sun};
-    add_emitters(scene, 0);
     const test::TestScene test{scene, camera_on(1), 64, 64};
     FOR_EACH_DEVICE(device) {
         RenderOptions options;
@@ -558,22 +566,7 @@ TEST(textures, blend_is_unbiased) {
     scene.materials[0].alpha = 0.3f;
     scene.materials[0].cutoff = -1;
     scene.materials[0].base_color = float4(1, 0, 0, 0);
-    Material behind = scene.materials[0];
-    behind.base_color = float4(0, 0, 1, 0);
-    behind.cutoff = 0;
-    scene.materials.push_back(behind);
-    scene.coordinates.clear();
-    for (std::uint32_t k = 0; k < 4; ++k)
-        scene.vertices.push_back(scene.vertices[k] - glm::vec3(0, 0, 1));
-    for (const std::uint32_t k : {4, 5, 6, 4, 6, 7}) scene.indices.push_back(k);
-    scene.triangle_materials.insert(scene.triangle_materials.end(), {1, 1});
-    find_alpha(scene);
-    Light sun{};
-    sun.position.w = LIGHT_DIRECTIONAL;
-    sun.axis = float4(0, 0, -1, 0);
-    sun.emission = float4(1, 1, 1, 0);
-    scene.lights = {sun};
-    add_emitters(scene, 0);
+    add_blue_behind(scene);
     const test::TestScene test{scene, camera_on(0.9), 64, 64};
     FOR_EACH_DEVICE(device)
     for (const bool pixel_centre : {false, true})

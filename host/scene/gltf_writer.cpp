@@ -25,6 +25,13 @@ void Mesh::add_quad(glm::vec3 corner, glm::vec3 u, glm::vec3 v) {
     for (const std::uint32_t i : {0, 1, 2, 0, 2, 3}) indices.push_back(base + i);
 }
 
+void Mesh::add_walls(float half, float height) {
+    const float side = 2 * half;
+    add_quad({-half, 0, -half}, {side, 0, 0}, {0, height, 0});
+    add_quad({-half, 0, half}, {0, 0, -side}, {0, height, 0});
+    add_quad({half, 0, -half}, {0, 0, side}, {0, height, 0});
+}
+
 void Mesh::add_triangle(glm::vec3 a, glm::vec3 b, glm::vec3 c) {
     for (const glm::vec3 p : {a, b, c}) {
         indices.push_back(static_cast<std::uint32_t>(positions.size()));

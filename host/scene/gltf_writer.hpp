@@ -16,6 +16,8 @@ struct Mesh {
 
     /// The parallelogram with corner `corner` that faces cross(u, v).
     void add_quad(glm::vec3 corner, glm::vec3 u, glm::vec3 v);
+    /// Walls behind, to the left and to the right of a square floor from -half to half, facing in.
+    void add_walls(float half, float height);
     /// The box that stands on `centre`, facing outwards, turned by `angle` radians about y.
     void add_box(glm::vec3 centre, glm::vec3 size, float angle = 0);
     /// A triangle that faces cross(b - a, c - a).

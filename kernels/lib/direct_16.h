@@ -3,7 +3,7 @@
 #ifndef MANYLIGHT_LIB_DIRECT_16_H
 #define MANYLIGHT_LIB_DIRECT_16_H
 
-// Includes lib/receivers_16.h before.
+#include "lib/receivers_16.h"
 
 // Fields: shared/light.h. Lanes whose kind is none of them hold no light.
 typedef struct Lights_16 {

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: MIT
 // The 16 pixels of a group of a pass (lib/cells.h), as lib/direct.h's receivers, by coordinates.
+// lib/node_estimate.h for 16 lanes comes before.
 #ifndef MANYLIGHT_LIB_RECEIVERS_16_H
 #define MANYLIGHT_LIB_RECEIVERS_16_H
 
+#include "lib/cells.h"
 #include "lib/transpose_16.h"
 
 // Where shadow rays start, unit geometric normals, and 1 where stage reflections takes part.
@@ -18,41 +20,33 @@ typedef struct Receivers_16 {
     int16 valid;
 } Receivers_16;
 
+// Sets a field of some lanes, of all at first.
+#define SET_LANES(field, value) \
+    p->field = left == 0xffffu ? (float16)(value) : select(p->field, (float16)(value), lanes)
 // What the lanes' materials have; most often they share one.
 static void load_materials_16(__global const Material* materials, uint16 indices, Points_16* p) {
-    const uint first = indices.s0;
-    const bool alike = lanes_16(indices == first) == 0xffffu;
-    for (uint lane = 0u; lane < (alike ? 1u : 16u); ++lane) {
-        __global const Material* m = materials + UINT_LANE(indices, lane);
-        SET_LANE(p->red, lane, m->base_color.x);
-        SET_LANE(p->green, lane, m->base_color.y);
-        SET_LANE(p->blue, lane, m->base_color.z);
+    int16 todo = (int16)(-1);
+    for (uint left = 0xffffu; left; left = lanes_16(todo)) {
+        const uint index = UINT_LANE(indices, lowest(left));
+        const int16 lanes = indices == index;
+        todo &= ~lanes;
+        __global const Material* m = materials + index;
+        SET_LANES(red, m->base_color.x);
+        SET_LANES(green, m->base_color.y);
+        SET_LANES(blue, m->base_color.z);
 #if HAS_GGX
-        SET_LANE(p->metallic, lane, m->base_color.w);
-        SET_LANE(p->alpha, lane, m->roughness);
-        SET_LANE(p->specular, lane, m->specular);
+        SET_LANES(metallic, m->base_color.w);
+        SET_LANES(alpha, m->roughness);
+        SET_LANES(specular, m->specular);
 #if HAS_REFLECTANCE
-        SET_LANE(p->f0_red, lane, m->reflectance.x);
-        SET_LANE(p->f0_green, lane, m->reflectance.y);
-        SET_LANE(p->f0_blue, lane, m->reflectance.z);
+        SET_LANES(f0_red, m->reflectance.x);
+        SET_LANES(f0_green, m->reflectance.y);
+        SET_LANES(f0_blue, m->reflectance.z);
 #endif
 #endif
     }
-    if (!alike) return;
-    p->red = (float16)(p->red.s0);
-    p->green = (float16)(p->green.s0);
-    p->blue = (float16)(p->blue.s0);
-#if HAS_GGX
-    p->metallic = (float16)(p->metallic.s0);
-    p->alpha = (float16)(p->alpha.s0);
-    p->specular = (float16)(p->specular.s0);
-#if HAS_REFLECTANCE
-    p->f0_red = (float16)(p->f0_red.s0);
-    p->f0_green = (float16)(p->f0_green.s0);
-    p->f0_blue = (float16)(p->f0_blue.s0);
-#endif
-#endif
 }
+#undef SET_LANES
 
 static Receivers_16 load_receivers_16(Tiles tiles, Pass pass, uint group, Camera camera,
                                       __global const Surface* surfaces,

@@ -5,9 +5,8 @@
 #include "lib/inverse.h"
 #include "lib/random.h"
 #include "lib/rays.h"
-#include "shared/light_tree.h"
-
 #include "lib/transpose_16.h"
+#include "shared/light_tree.h"
 
 #define LANES 1
 #define NODES 1
@@ -20,8 +19,6 @@
 #include "lib/node_estimate.h"
 #undef NODES
 #undef LANES
-#include "lib/receivers_16.h"
-
 #include "lib/direct_16.h"
 
 // Lights of the lanes' nodes, drawn child by child by their estimates.

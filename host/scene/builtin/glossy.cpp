@@ -9,9 +9,7 @@ void make_glossy(GltfWriter& out, const BuiltinOptions& options) {
     Mesh floor;
     floor.add_quad({-6, 0, 6}, {12, 0, 0}, {0, 0, -12});
     Mesh walls;
-    walls.add_quad({-6, 0, -6}, {12, 0, 0}, {0, 4, 0});
-    walls.add_quad({-6, 0, 6}, {0, 0, -12}, {0, 4, 0});
-    walls.add_quad({6, 0, -6}, {0, 0, 12}, {0, 4, 0});
+    walls.add_walls(6, 4);
     Mesh boxes;
     Mesh columns;
     for (int i = 0; i < 14; ++i) {

@@ -15,9 +15,7 @@ void make_hidden(GltfWriter& out, const BuiltinOptions& options) {
     Mesh room;
     room.add_quad({-3, 0, 3}, {6, 0, 0}, {0, 0, -6});
     room.add_quad({-3, 2.6f, -3}, {6, 0, 0}, {0, 0, 6});
-    room.add_quad({-3, 0, -3}, {6, 0, 0}, {0, 2.6f, 0});
-    room.add_quad({-3, 0, 3}, {0, 0, -6}, {0, 2.6f, 0});
-    room.add_quad({3, 0, -3}, {0, 0, 6}, {0, 2.6f, 0});
+    room.add_walls(3, 2.6f);
     Mesh boxes;
     for (int i = 0; i < 6; ++i)
         boxes.add_box(random.in({-2.4f, 0, -2.4f}, {2.4f, 0, 0.8f}),

@@ -13,9 +13,7 @@ void make_range(GltfWriter& out, const BuiltinOptions& options) {
     Random random(23);
     Mesh hall;
     hall.add_quad({-5, 0, 5}, {10, 0, 0}, {0, 0, -10});
-    hall.add_quad({-5, 0, -5}, {10, 0, 0}, {0, 4, 0});
-    hall.add_quad({-5, 0, 5}, {0, 0, -10}, {0, 4, 0});
-    hall.add_quad({5, 0, -5}, {0, 0, 10}, {0, 4, 0});
+    hall.add_walls(5, 4);
     Mesh columns;
     for (int i = 0; i < 16; ++i)
         columns.add_box(

@@ -12,9 +12,7 @@ void make_stacks(GltfWriter& out, const BuiltinOptions& options) {
     Random random(29);
     Mesh room;
     room.add_quad({-3, 0, 3}, {6, 0, 0}, {0, 0, -6});
-    room.add_quad({-3, 0, -3}, {6, 0, 0}, {0, 3, 0});
-    room.add_quad({-3, 0, 3}, {0, 0, -6}, {0, 3, 0});
-    room.add_quad({3, 0, -3}, {0, 0, 6}, {0, 3, 0});
+    room.add_walls(3, 3);
     Mesh boxes;
     for (int i = 0; i < 5; ++i)
         boxes.add_box(random.in({-2.2f, 0, -2.2f}, {2.2f, 0, 0.6f}),
