@@ -5,6 +5,7 @@
 #include <random>
 #include <set>
 
+#include "reference/adaptive.hpp"
 #include "reference/light_tree.hpp"
 #include "reference/shading.hpp"
 #include "support.hpp"
@@ -85,7 +86,7 @@ TEST(light_tree, nodes_hold_their_lights) {
         double power = 0;
         double square = 0;
         const auto place_of = [&](const Light& l) {
-            if (node.infinite) return -glm::dvec3(l.axis);
+            if (NODE_IS_INFINITE(node)) return -glm::dvec3(l.axis);
             glm::dvec3 p(l.position);
             if (kind_of(l) == LIGHT_TRIANGLE) p += glm::dvec3(l.axis + l.edge) / 3.0;
             if (kind_of(l) == LIGHT_QUAD) p += glm::dvec3(l.axis + l.edge) / 2.0;
@@ -101,7 +102,7 @@ TEST(light_tree, nodes_hold_their_lights) {
         for (uint k = node.first; k < node.first + node.count; ++k) {
             const Light& l = tree.lights[k];
             EXPECT_EQ(l.position, lights[tree.order[k]].position);
-            EXPECT_EQ((kind_of(l) == LIGHT_DIRECTIONAL), node.infinite == 1);
+            EXPECT_EQ((kind_of(l) == LIGHT_DIRECTIONAL), NODE_IS_INFINITE(node));
             sum += intensity_of(l);
             centre += reference::luminance(intensity_of(l)) * place_of(l);
             phi += reference::luminance(intensity_of(l));
@@ -164,6 +165,52 @@ TEST(light_tree, importance_is_conservative) {
         }
     }
     EXPECT_GT(reached, 1000);
+}
+
+// Spots, 32 at a place: where any of a node's lights shines, so does its estimate;
+// and where none does, most estimates of groups say so.
+TEST(light_tree, spots_shine_within_reach) {
+    std::mt19937 engine(7);
+    std::uniform_real_distribution<float> unit(0, 1);
+    Scene scene;
+    for (int i = 0; i < 256; ++i) {
+        scene.lights.push_back({float4(static_cast<float>(i / 32), 2, 0, LIGHT_SPOT),
+                                float4(random_direction(engine), 0), float4(30, -29, 0, 0),
+                                float4(1, 1, 1, 0)});
+    }
+    Material white{};
+    white.base_color = float4(1, 1, 1, 0);
+    white.roughness = 1;
+    scene.materials = {white};
+    add_emitters(scene, 0);
+    const LightTree tree = build_light_tree(scene.lights);
+    int reached = 0;
+    int dark = 0;
+    int found_dark = 0;
+    for (int i = 0; i < 200; ++i) {
+        Surface surface{};
+        surface.position = float4(8 * unit(engine), 4 * unit(engine), 2 * unit(engine), 1);
+        surface.normal = surface.geometric = float4(random_direction(engine), 0);
+        for (uint n = 0; n < tree.nodes.size(); ++n) {
+            const LightNode& node = tree.nodes[n];
+            bool contributes = false;
+            for (uint k = node.first; k < node.first + node.count && !contributes; ++k)
+                contributes = reference::unshadowed(surface, white, Camera{}, tree.lights[k],
+                                                    glm::dvec2(1. / 3))
+                                  .value != glm::dvec3(0);
+            const double estimate =
+                reference::luminance(reference::node_estimate(tree, n, {scene, Camera{}, surface}));
+            if (contributes) {
+                ++reached;
+                ASSERT_GT(estimate, 0) << "lights " << node.first << ", " << node.count;
+            } else if (node.count > 1 && node.count <= 4) {
+                ++dark;
+                found_dark += estimate == 0;
+            }
+        }
+    }
+    EXPECT_GT(reached, 1000);
+    EXPECT_GT(found_dark, 0.9 * dark);
 }
 
 // Coincident lights, one light, none; sums that overflow nothing.

@@ -204,8 +204,8 @@ bool page_tells_of_negative_values(std::string_view sampler) {
 // Where sampler adaptive is worse than allowed, and how much; docs/atlas.md says why.
 const std::map<std::string, double, std::less<>> exceptions = {
     {"glossy --roughness 0.03", 1.8}, {"hidden --visible 0.01", 30},
-    {"hidden --visible 0.001", 250},  {"stacks --stack 64", 15},
-    {"stacks --stack 512", 20},       {"1 light sample", 2.3}};
+    {"hidden --visible 0.001", 250},  {"stacks --stack 64", 7},
+    {"stacks --stack 512", 5},        {"1 light sample", 2.3}};
 constexpr double most_ratio = 1.2;  // of adaptive's error to the best other sampler's
 
 constexpr std::size_t few_lights = 200;

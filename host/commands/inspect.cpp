@@ -54,7 +54,7 @@ struct Inspected {
     }
     [[nodiscard]] std::string place(const InspectedNode& n) const {
         if (node(n).count == 1) return place_of(loaded.scene.lights[light(n)]);
-        return (node(n).infinite ? "from " : "round ") + show(glm::vec3(node(n).centre));
+        return (NODE_IS_INFINITE(node(n)) ? "from " : "round ") + show(glm::vec3(node(n).centre));
     }
 };
 
@@ -215,7 +215,8 @@ json to_json(const Inspected& in, std::size_t rows) {
         const LightNode& node = in.node(n);
         json entry = node.count == 1 ? describe(in.loaded.scene, in.light(n)) : json::object();
         if (node.count > 1)
-            entry[node.infinite ? "direction" : "position"] = vector_json(glm::vec3(node.centre));
+            entry[NODE_IS_INFINITE(node) ? "direction" : "position"] =
+                vector_json(glm::vec3(node.centre));
         entry.update({{"node", n.node},
                       {"lights", node.count},
                       {"lights_facing", n.facing},

@@ -72,13 +72,13 @@ LightNode leaf_of(const Light& light, uint index) {
     node.first = index;
     node.count = 1;
     node.kind = kind;
-    node.infinite = kind == LIGHT_DIRECTIONAL ? 1 : 0;
+    node.reach = -1;
     Bounds bounds;
     glm::vec3 centre(0);
     glm::vec3 intensity(light.emission);
     float mean_square = 0;
     float radius = 0;
-    if (node.infinite) {
+    if (NODE_IS_INFINITE(node)) {
         centre = -glm::vec3(light.axis);
         bounds.add(centre);
     } else if (has_area(light)) {
@@ -103,7 +103,7 @@ LightNode leaf_of(const Light& light, uint index) {
     float emitting = -1;  // cosine of the largest angle off the axis
     if (kind == LIGHT_SPOT) emitting = std::clamp(-light.edge.y / light.edge.x, 0.f, 1.f);
     if (has_axis(light) && kind != LIGHT_SPOT) emitting = 0;
-    node.lower = float4(bounds.lower, has_axis(light) || node.infinite ? 1 : -1);
+    node.lower = float4(bounds.lower, has_axis(light) || NODE_IS_INFINITE(node) ? 1 : -1);
     node.upper = float4(bounds.upper, emitting);
     node.cone = float4(has_axis(light) ? axis : glm::vec3(0, 0, 1), light.emission.w);
     return node;
@@ -137,12 +137,22 @@ float4 mean_axis(const LightNode& node) {
 
 float phi(const LightNode& node) { return luminance(glm::vec3(node.intensity)); }
 
+// See LightNode::reach; from the cone of axes and the largest angle off any of them.
+float reach_of(const LightNode& node) {
+    const glm::vec3 axis(node.axis);
+    const float length = glm::length(axis);
+    if (node.upper.w <= 0 || length == 0) return -1;
+    const float off_cone = glm::dot(axis / length, glm::vec3(node.cone));
+    const float angle = std::acos(std::clamp(off_cone, -1.f, 1.f)) + std::acos(node.lower.w) +
+                        std::acos(node.upper.w);
+    return angle < pi ? std::max(std::cos(angle) - 1e-4f, -1.f) : -1;
+}
+
 LightNode join(const LightNode& a, const LightNode& b) {
     LightNode node{};
     node.first = a.first;
     node.count = a.count + b.count;
-    node.infinite = a.infinite;
-    node.kind = NODE_GROUP;
+    node.kind = NODE_IS_INFINITE(a) ? NODE_DIRECTIONS : NODE_GROUP;
     const float sum = phi(a) + phi(b);
     const float wa = sum > 0 ? phi(a) / sum : 0.5f;
     const float wb = 1 - wa;
@@ -165,6 +175,7 @@ LightNode join(const LightNode& a, const LightNode& b) {
     node.lower = float4(lower, cone.w);
     node.upper = float4(upper, std::min(a.upper.w, b.upper.w));
     node.cone = float4(glm::vec3(cone), a.cone.w + b.cone.w);
+    node.reach = reach_of(node);
     return node;
 }
 
@@ -280,12 +291,40 @@ class Builder {
                 }
             }
         }
-        if (best_axis < 0) return half;
+        if (best_axis < 0) {
+            return split_directions(begin, end);
+        }
         const auto first = references_.begin();
         const auto middle = std::partition(
             first + static_cast<std::ptrdiff_t>(begin), first + static_cast<std::ptrdiff_t>(end),
             [&](const Reference& r) { return bin_of(r, best_axis) < best_bin; });
         return static_cast<std::size_t>(middle - first);
+    }
+
+    // Of lights at one place those without an axis go to the left, otherwise the half with the
+    // smaller component of the axis, that which differs most.
+    std::size_t split_directions(std::size_t begin, std::size_t end) {
+        const std::size_t half = begin + (end - begin) / 2;
+        const auto direction_of = [](const Reference& r) {
+            return r.power > 0 ? r.axis / r.power : glm::vec3(0);
+        };
+        const auto at = [&](std::size_t i) {
+            return references_.begin() + static_cast<std::ptrdiff_t>(i);
+        };
+        const auto middle = std::stable_partition(
+            at(begin), at(end), [](const Reference& r) { return r.axis == glm::vec3(0); });
+        if (middle != at(begin) && middle != at(end))
+            return static_cast<std::size_t>(middle - references_.begin());
+        Bounds bounds;
+        for (std::size_t i = begin; i < end; ++i) bounds.add(direction_of(references_[i]));
+        const glm::vec3 size = bounds.upper - bounds.lower;
+        int axis = size.x >= size.y ? 0 : 1;
+        if (size.z > size[axis]) axis = 2;
+        if (!(size[axis] > 0)) return half;
+        std::nth_element(at(begin), at(half), at(end), [&](const Reference& a, const Reference& b) {
+            return direction_of(a)[axis] < direction_of(b)[axis];
+        });
+        return half;
     }
 
     const std::vector<Light>& lights_;
@@ -305,7 +344,7 @@ LightTree build_light_tree(const std::vector<Light>& lights) {
         const LightNode leaf = leaf_of(light, 0);
         const Reference r{glm::vec3(leaf.centre), light.emission.w,
                           light.emission.w * glm::vec3(leaf.axis), static_cast<std::uint32_t>(i)};
-        (leaf.infinite ? directional : finite).push_back(r);
+        (NODE_IS_INFINITE(leaf) ? directional : finite).push_back(r);
     }
     LightTree tree;
     Builder builder(lights, tree);

@@ -20,7 +20,8 @@ struct LightTree {
 /// sides of power x squared diagonal x spread of the emission axes, after the surface area
 /// orientation heuristic of Conty Estevez and Kulla, "Importance Sampling of Many Lights with
 /// Adaptive Tree Splitting" (2018), whose cone is replaced by the length of the mean axis: sums
-/// are fast. The result does not depend on the number of threads.
+/// are fast. Lights at one place are split by their axes. The result does not depend on the number
+/// of threads.
 [[nodiscard]] LightTree build_light_tree(const std::vector<Light>& lights);
 
 }  // namespace manylight

@@ -62,6 +62,18 @@ double leaf_emission(const LightNode& node, const Light& light, const glm::dvec3
     return emission;
 }
 
+// 0 where none of a group's lights shines: off its mean axis by more than its reach and what its
+// radius is seen under.
+double share_in_reach(const LightNode& node, const glm::dvec3& towards, double distance) {
+    const double seen = node.intensity.w / distance;
+    if (node.reach <= -1 || seen >= 1) return 1;
+    const double angle = std::acos(double{node.reach}) + std::asin(seen);
+    if (angle >= glm::pi<double>()) return 1;
+    const glm::dvec3 axis(node.axis);
+    const double inside = -glm::dot(axis, towards) - std::cos(angle) * glm::length(axis);
+    return std::clamp(1 + 20 * inside, 0.0, 1.0);
+}
+
 }  // namespace
 
 glm::dvec3 node_estimate(const LightTree& tree, uint index, const Point& point) {
@@ -72,7 +84,7 @@ glm::dvec3 node_estimate(const LightTree& tree, uint index, const Point& point) 
     glm::dvec3 towards;
     double spread;
     double factor;
-    if (node.infinite) {
+    if (NODE_IS_INFINITE(node)) {
         towards = glm::normalize(centre);
         spread = node.centre.w;
         const double k = glm::dot(normal, towards);
@@ -104,6 +116,7 @@ glm::dvec3 node_estimate(const LightTree& tree, uint index, const Point& point) 
             emission = node.axis.w;
             if (oriented > 0)
                 emission += soft(-glm::dot(axis, towards), spread * oriented * oriented + delta);
+            emission *= share_in_reach(node, towards, distance);
         }
         factor = soft(k, spread) * emission / softened;
     }
@@ -323,7 +336,7 @@ std::vector<PixelDraws> draw_nodes(const LightTree& tree, const Scene& scene, co
             if (!pixels[i].surface) continue;
             const double distance =
                 glm::length(glm::dvec3(node.centre) - glm::dvec3(pixels[i].surface->position));
-            const double near = node.infinite
+            const double near = NODE_IS_INFINITE(node)
                                     ? double{node.intensity.w}
                                     : std::min(node.intensity.w / std::max(distance, 1e-20), 1.0);
             const double limit = sums[i] * 0.25 / budget.samples;

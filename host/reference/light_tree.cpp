@@ -11,7 +11,7 @@ namespace manylight::reference {
 
 double importance(const LightNode& node, const Surface& surface) {
     const glm::dvec3 normal(surface.normal);
-    if (node.infinite) {
+    if (NODE_IS_INFINITE(node)) {
         const double cosine = glm::dot(normal, glm::dvec3(node.centre)) + double{node.intensity.w};
         return luminance(glm::dvec3(node.intensity)) * std::clamp(cosine, 0.0, 1.0);
     }

@@ -30,7 +30,7 @@ static Angle less(Angle a, Angle b) {
 // "Importance Sampling of Many Lights with Adaptive Tree Splitting", 2018, as pbrt-v4 evaluates it
 // in LightBounds::Importance). Distances count as the radius of the bounds at least.
 static float node_importance(__global const LightNode* node, const Receiver* r) {
-    if (node->infinite) {
+    if (NODE_IS_INFINITE(*node)) {
         const float3 c = node->centre.xyz;
         const float cosine = dot(r->normal, c) + node->intensity.w;
         return cosine <= 0.0f ? 0.0f : luminance(node->intensity.xyz) * min(cosine, 1.0f);

@@ -5,6 +5,10 @@
 // Included with LANES 1 and NODES 1 for a node and a point, with LANES 16 and NODES 1 for a node
 // and 16 points, and with LANES 16 and NODES 16 for 16 nodes, each with a point of its own. Names
 // end in _1, _16 and _16_16 then.
+#ifndef REACH_EDGE
+#define REACH_EDGE 20.0f  // 1 / the cosine over which light fades beyond a group's reach
+#endif
+
 #if LANES == 1
 #define REAL float
 #define NAMED(name) name##_1
@@ -42,6 +46,7 @@ typedef struct NODE {
 #endif
 #if HAS_SPOT
     NODE_REAL scale, offset;  // of the cone, 0 and 1 without one
+    NODE_REAL reach;          // of a group
 #endif
 #if NODES == 1
     uint kind;  // LIGHT_DIRECTIONAL for groups of them, too
@@ -69,7 +74,7 @@ static Node_1 load_node(__global const LightNode* node, __global const Light* li
     n.green = node->intensity.y;
     n.blue = node->intensity.z;
     n.radius = node->intensity.w;
-    n.kind = node->infinite ? LIGHT_DIRECTIONAL : node->kind;
+    n.kind = node->kind == NODE_DIRECTIONS ? LIGHT_DIRECTIONAL : node->kind;
 #if HAS_POINT || HAS_SPOT
     n.falloff = n.kind == LIGHT_POINT || n.kind == LIGHT_SPOT
                     ? inverse_square(lights[node->first].axis.w)
@@ -78,6 +83,7 @@ static Node_1 load_node(__global const LightNode* node, __global const Light* li
 #if HAS_SPOT
     n.scale = n.kind == LIGHT_SPOT ? lights[node->first].edge.x : 0.0f;
     n.offset = n.kind == LIGHT_SPOT ? lights[node->first].edge.y : 1.0f;
+    n.reach = node->reach;
 #endif
     return n;
 }
@@ -104,8 +110,8 @@ static Node_16 load_nodes_16(__global const LightNode* nodes, __global const Lig
     n.green = rows[9];
     n.blue = rows[10];
     n.radius = rows[11];
-    n.kind = select(as_uint16(rows[15]), (uint16)(LIGHT_DIRECTIONAL),
-                    as_uint16(as_uint16(rows[14]) != 0u));
+    n.kind = as_uint16(rows[15]);
+    n.kind = select(n.kind, (uint16)(LIGHT_DIRECTIONAL), as_uint16(n.kind == NODE_DIRECTIONS));
     // What single lights have of their own.
 #if HAS_POINT || HAS_SPOT
     n.falloff = (float16)(0.0f);
@@ -116,6 +122,7 @@ static Node_16 load_nodes_16(__global const LightNode* nodes, __global const Lig
     }
 #endif
 #if HAS_SPOT
+    n.reach = rows[14];
     n.scale = (float16)(0.0f);
     n.offset = (float16)(1.0f);
     for (lanes = lanes_16(n.kind == LIGHT_SPOT); lanes; lanes &= lanes - 1u) {
@@ -274,7 +281,19 @@ static REAL NODE_NAMED(node_geometry)(const NODE* node, const NAMED(Points) * p,
         const NODE_REAL axis2 = node->ax * node->ax + node->ay * node->ay + node->az * node->az;
         const NODE_REAL delta = max(o2 - axis2, 0.0f) / 3.0f;
         const REAL lobe = NAMED(soft)(along, *spread * o2 + delta);
-        const REAL mixed = node->iso + WHERE_NODE(node->iso < 1.0f, lobe, (REAL)(0.0f));
+        REAL mixed = node->iso + WHERE_NODE(node->iso < 1.0f, lobe, (REAL)(0.0f));
+#if HAS_SPOT
+        // Nothing where none of a group's spots shines, but a little beside that.
+        if (ANY_NODE(node->reach > -1.0f)) {
+            const NODE_REAL reach_sine = sqrt(max(1.0f - node->reach * node->reach, 0.0f));
+            const REAL sine = node->radius * inverse;
+            const REAL cosine = NAMED(root)(max(1.0f - sine * sine, (REAL)(0.0f)));
+            const REAL limit = (cosine * node->reach - sine * reach_sine) * sqrt(axis2);
+            mixed *= WHERE((sine < 1.0f) & (cosine > -node->reach),
+                           clamp(fma(REACH_EDGE, along - limit, (REAL)(1.0f)), 0.0f, 1.0f),
+                           (REAL)(1.0f));
+        }
+#endif
         emission = WHERE_NODE(cosines, mixed, emission);
     }
     const REAL finite =

@@ -84,7 +84,7 @@ static bool wants_children(__global const LightNode* node, const Points_16* p, f
                   dz = node->centre.z - p->pz;
     const float16 inverse = inverse_root_16(max(dot3_16(dx, dy, dz, dx, dy, dz), 1e-30f));
     const float16 near =
-        node->infinite ? (float16)(node->intensity.w) : min(node->intensity.w * inverse, 1.0f);
+        NODE_IS_INFINITE(*node) ? (float16)(node->intensity.w) : min(node->intensity.w * inverse, 1.0f);
     return lanes_16(weight * near > limit) != 0u;
 }
 

@@ -35,7 +35,7 @@
     X(RowSum, visible) X(RowSum, unshadowed) X(RowSum, visible_count) X(RowSum, facing_count)      \
     X(LightNode, centre) X(LightNode, axis) X(LightNode, intensity) X(LightNode, lower)            \
     X(LightNode, upper) X(LightNode, cone) X(LightNode, first) X(LightNode, count)                 \
-    X(LightNode, infinite) X(LightNode, kind) X(Trials, traced) X(Trials, passed)                  \
+    X(LightNode, reach) X(LightNode, kind) X(Trials, traced) X(Trials, passed)                  \
     X(Pass, first) X(Pass, count) X(Pass, number) X(Pass, first_tile) X(Pass, tile_count) X(Pass, packets) X(Budget, samples) X(Budget, factor) X(Budget, exposure) X(Expectation, variance) X(Expectation, luminance)                                                 \
     X(Mixture, visible) X(Mixture, unshadowed) X(Mixture, power) X(Mixture, total_power)
 // clang-format on

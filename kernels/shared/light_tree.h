@@ -2,6 +2,7 @@
 #ifndef MANYLIGHT_SHARED_LIGHT_TREE_H
 #define MANYLIGHT_SHARED_LIGHT_TREE_H
 
+#include "shared/light.h"
 #include "shared/types.h"
 
 SHARED_BEGIN
@@ -22,8 +23,9 @@ typedef struct LightNode {
     float4 intensity;  // rgb: sum; w: radius about the centre that holds all lights
     uint first;
     uint count;
-    uint infinite;  // 1 where the lights are directional
-    uint kind;      // of a leaf its LightKind, of an inner node NODE_GROUP
+    float reach;    // of a group of spots: the cosine of the largest angle off the mean axis in
+                    // which any of them shines, or less; -1: all, as of other nodes
+    uint kind;      // of a leaf its LightKind, of an inner node NODE_GROUP or NODE_DIRECTIONS
     float4 lower;   // xyz: bounds; w: cosine of the bound on the angle between cone and axes
     float4 upper;   // xyz: bounds; w: cosine of the largest angle off its axis that a light
                     // emits at, at most a right angle; below 0: everywhere
@@ -33,6 +35,9 @@ typedef struct LightNode {
 SHARED_SIZE(LightNode, 128)
 
 #define NODE_GROUP 100
+#define NODE_DIRECTIONS 101  // a group of directional lights
+
+#define NODE_IS_INFINITE(node) ((node).kind == LIGHT_DIRECTIONAL || (node).kind == NODE_DIRECTIONS)
 
 SHARED_END
 
