@@ -14,7 +14,7 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
-scripts/install.sh --atlas
+scripts/install.sh --plots
 cmake -G Ninja -B build >/dev/null
 cmake --build build --target manylight
 exec /usr/bin/python3 scripts/atlas.py "$@"

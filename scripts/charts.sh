@@ -4,8 +4,10 @@
 # usage: scripts/charts.sh [--only NAME,...] [OPTION...]
 #   --only NAME,...  some of the scenes (default: cornell,dragon,rooms,city,glossy,blinds)
 #   OPTION...        of manylight chart, for all scenes: --device D, --seeds N, ...
+# Then build/charts/errors.png, error against time of all, and a table (scripts/charts.py).
 # Images have half the scene's usual size; city, of which exhaustive draws all 100,000 lights, a
-# quarter. On 2 cores it takes less than an hour. References are kept between runs.
+# quarter. On 2 cores it takes less than an hour. References get two minutes each and are kept
+# between runs, which makes them better; --most-seconds is 120, see manylight chart --help.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -15,8 +17,9 @@ if [[ ${1:-} == --only ]]; then
     shift 2
 fi
 [[ " $* " == *" --seeds "* ]] || set -- "$@" --seeds 3
-[[ " $* " == *" --most-seconds "* ]] || set -- "$@" --most-seconds 900
-scripts/install.sh
+[[ " $* " == *" --reference-time "* ]] || set -- "$@" --reference-time 120
+[[ " $* " == *" --most-seconds "* ]] || set -- "$@" --most-seconds 120
+scripts/install.sh --plots
 cmake -G Ninja -B build >/dev/null
 cmake --build build --target manylight
 mkdir -p build/charts
@@ -30,3 +33,4 @@ for name in ${names//,/ }; do
     build/manylight chart "build/charts/$name.glb" --height $height \
         -o "build/charts/$name" "$@"
 done
+/usr/bin/python3 scripts/charts.py

@@ -1,23 +1,23 @@
 #!/usr/bin/env bash
 # Installs what building and running manylight needs on Debian 12; does nothing where all is there.
 #
-# usage: scripts/install.sh [--tests] [--no-intel] [--atlas]
+# usage: scripts/install.sh [--tests] [--no-intel] [--plots]
 #   --tests     also what the tests need: GoogleTest, Embree (for manylight bench), Python, Clang (to
 #               lint kernels), Chromium and Selenium (to click through reports), and Intel's OpenCL
 #               runtime for CPUs, where the processor is x86-64 (830 MB, into ~/.cache/manylight), so
 #               that two vendors' compilers run every kernel
 #   --no-intel  without Intel's runtime
-#   --atlas     also Matplotlib, which draws the failure atlas
+#   --plots     also Matplotlib, which draws the failure atlas and the picture of charts
 set -euo pipefail
 
 tests=false
 intel=true
-atlas=false
+plots=false
 for argument in "$@"; do
     case $argument in
         --tests) tests=true ;;
         --no-intel) intel=false ;;
-        --atlas) atlas=true ;;
+        --plots) plots=true ;;
         *) echo "install.sh: unknown option $argument" >&2; exit 2 ;;
     esac
 done
@@ -32,7 +32,7 @@ if $tests; then
     packages+=(libgtest-dev libembree-dev python3 python3-venv clang-15
         chromium chromium-driver python3-selenium)
 fi
-if $atlas; then
+if $plots; then
     packages+=(python3 python3-matplotlib)
 fi
 

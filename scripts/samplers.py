@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
 """The tables of samplers.sh, which builds the program first.
 
-All images have half the scene's usual size and one or more pixel samples at the pixel's centre, and
-show what emitters light, not the emitters. Errors are relMSE against an image of all lights, or,
+All images have half the scene's usual size and one or more pixel samples at the pixel's centre (but
+for few-lights), and show what emitters light, not the emitters. Errors are relMSE against an image of all lights, or,
 where those are too many, a long run of sampler adaptive; the mean over seeds. Times are prepare +
 render of --stats: light tree, cuts and learning are in, loading, the BVH and compiling are not. The
 error of a sampler at another one's time is read between its own runs (log-log).
@@ -23,10 +23,10 @@ LADDER = ((4, 1), (8, 1), (16, 1), (32, 1), (64, 1), (8, 4), (8, 8))  # light sa
 MOST_LIGHTS = 20_000  # of which all can be drawn
 
 
-def render(scene, sampler, samples, spp, seed, name, device):
+def render(scene, sampler, samples, spp, seed, name, device, positions=("--pixel-centre",)):
     """Renders to FOLDER/name.exr; returns prepare + render seconds and all statistics."""
     subprocess.run([PROGRAM, "render", scene, "--quiet", "--sampler", sampler, "--light-samples",
-                    str(samples), "--spp", str(spp), "--seed", str(seed), "--pixel-centre",
+                    str(samples), "--spp", str(spp), "--seed", str(seed), *positions,
                     "--hide-emitters", "--height", str(HEIGHTS.get(scene.stem, 180)),
                     "-o", FOLDER / f"{name}.exr", "--stats", FOLDER / "stats.json", *device],
                    check=True)
@@ -146,6 +146,27 @@ def never_worse(scenes, seeds, device):
     return table
 
 
+def few_lights(seeds, device):
+    """All lights or 4 light samples, with anti-aliasing: relMSE x seconds of 8 pixel samples."""
+    print("lights  exhaustive  adaptive   ratio")
+    table = []
+    for lights in (8, 16, 24, 32, 48):
+        scene = FOLDER / "few.glb"
+        subprocess.run([PROGRAM, "scene", "city", "--lights", str(lights), "-o", scene], check=True,
+                       stdout=subprocess.DEVNULL)
+        render(scene, "exhaustive", 1, 400, 0, "reference", device, ())
+        products = {"exhaustive": [], "adaptive": []}
+        for seed in range(seeds + 1):  # in turns; the first one compiles
+            for sampler, results in products.items():
+                seconds = render(scene, sampler, 4, 8, seed + 1, "image", device, ())[0]
+                results.append(seconds * relmse("image", "reference"))
+        row = {name: statistics.median(results[1:]) for name, results in products.items()}
+        table.append({"lights": lights} | row)
+        print(f"{lights:6} {row['exhaustive']:11.6f} {row['adaptive']:9.6f} "
+              f"{row['exhaustive'] / row['adaptive']:7.2f}", flush=True)
+    return table
+
+
 def scale(seeds, device):
     """The time of a frame of city with more and more lights."""
     print("lights    tree s  frame s   ratio")
@@ -191,7 +212,7 @@ def overhead(scenes, seeds, device):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--table", choices=("worth", "never-worse", "overhead", "scale"),
+    parser.add_argument("--table", choices=("worth", "never-worse", "overhead", "few-lights", "scale"),
                         default="worth")
     parser.add_argument("--scenes", type=pathlib.Path)
     parser.add_argument("--only", default="")
@@ -209,14 +230,11 @@ def main():
     device = ["--device", arguments.device] if arguments.device else []
     if arguments.only:
         scenes = [s for s in scenes if s.stem in arguments.only.split(",")]
-    if arguments.table == "never-worse":
-        table = never_worse(scenes, arguments.seeds, device)
-    elif arguments.table == "overhead":
-        table = overhead(scenes, arguments.seeds, device)
-    elif arguments.table == "scale":
-        table = scale(arguments.seeds, device)
+    if arguments.table in ("scale", "few-lights"):
+        table = {"scale": scale, "few-lights": few_lights}[arguments.table](arguments.seeds, device)
     else:
-        table = worth(scenes, arguments.seeds, device)
+        make = {"worth": worth, "never-worse": never_worse, "overhead": overhead}
+        table = make[arguments.table](scenes, arguments.seeds, device)
     (FOLDER / f"{arguments.table}.json").write_text(json.dumps(table, indent=2) + "\n")
 
 
