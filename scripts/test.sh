@@ -14,4 +14,4 @@ run=(scripts/with-intel.sh)
 if [[ " $* " == *" --no-intel "* ]]; then
     run=()
 fi
-"${run[@]}" ctest --test-dir build --output-on-failure
+"${run[@]}" ctest --test-dir build --parallel 2 --output-on-failure

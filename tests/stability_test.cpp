@@ -313,7 +313,7 @@ TEST(stability, adaptive_is_unbiased_on_every_scene) {
         const Runs expected(references, truth, 0);
         for (const uint light_samples : {1u, 4u, 16u}) {
             point.light_samples = light_samples;
-            const Runs runs(point.render("adaptive", 2, 24), truth, 0);
+            const Runs runs(point.render("adaptive", 2, 16), truth, 0);
             EXPECT_GT(runs.probability(expected), 1e-6)
                 << scene.name << ", " << light_samples << " light samples";
         }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Is each sampler's mean over many seeds the all-lights image? One test for all: Student's t at
-// every pixel and for the image's mean, corrected for the number of pixels.
+// every pixel and for the image's mean, corrected for the number of pixels. All samplers run
+// on every device, the rest on one: what devices do differently, the tests of stages see.
 #include <cmath>
 
 #include "reference/gbuffer.hpp"
@@ -222,53 +223,50 @@ TEST(statistics, unbiased_samplers_are_unbiased) {
 
 // Samplers that go down light trees, on more lights than a cut has nodes, most of them hidden.
 TEST(statistics, cuts_of_many_lights_are_unbiased) {
-    FOR_EACH_DEVICE(device) {
-        const test::TestScene scene = small("many");
-        const Moments reference = render_seeds(device, scene, options_for("exhaustive", 1), 1);
-        for (const std::string_view sampler : {"lighttree", "adaptive"})
-            for (const uint light_samples : {1u, 4u, 20u}) {
-                SCOPED_TRACE(fmt::format("{}, {} light samples", sampler, light_samples));
-                expect_unbiased(
-                    judge(render_seeds(device, scene, options_for(sampler, light_samples), 120),
-                          reference, scene));
-            }
-    }
+    const Device& device = test::devices().front();
+    const test::TestScene scene = small("many");
+    const Moments reference = render_seeds(device, scene, options_for("exhaustive", 1), 1);
+    for (const std::string_view sampler : {"lighttree", "adaptive"})
+        for (const uint light_samples : {1u, 4u, 20u}) {
+            SCOPED_TRACE(fmt::format("{}, {} light samples", sampler, light_samples));
+            expect_unbiased(
+                judge(render_seeds(device, scene, options_for(sampler, light_samples), 120),
+                      reference, scene));
+        }
 }
 
 // However rendering stops: where the error is small enough, and in the middle of a sample where
 // time is over.
 TEST(statistics, stopped_renders_are_unbiased) {
-    FOR_EACH_DEVICE(device) {
-        const test::TestScene scene = small("points");
-        const Moments reference = render_seeds(device, scene, options_for("exhaustive", 1), 1);
-        RenderOptions options = options_for("adaptive", 0);
-        options.spp = 64;
-        options.target_error = 0.002;
-        expect_unbiased(judge(render_seeds(device, scene, options, 100), reference, scene));
-        options.target_error = 0;
-        Moments by_time;
-        for (options.seed = 0; options.seed < 100; ++options.seed) {
-            options.deadline = Clock::now() + std::chrono::milliseconds(8 + options.seed % 8);
-            by_time.add(luminances(test::render(device, scene, options).image));
-        }
-        // No two runs stop alike: one in a million may look biased by chance.
-        expect_unbiased(judge(by_time, reference, scene), 1e-6);
+    const Device& device = test::devices().front();
+    const test::TestScene scene = small("points");
+    const Moments reference = render_seeds(device, scene, options_for("exhaustive", 1), 1);
+    RenderOptions options = options_for("adaptive", 0);
+    options.spp = 64;
+    options.target_error = 0.002;
+    expect_unbiased(judge(render_seeds(device, scene, options, 100), reference, scene));
+    options.target_error = 0;
+    Moments by_time;
+    for (options.seed = 0; options.seed < 100; ++options.seed) {
+        options.deadline = Clock::now() + std::chrono::milliseconds(8 + options.seed % 8);
+        by_time.add(luminances(test::render(device, scene, options).image));
     }
+    // No two runs stop alike: one in a million may look biased by chance.
+    expect_unbiased(judge(by_time, reference, scene), 1e-6);
 }
 
 // The same test sees the bias of the sampler that the table calls biased, and that it loses energy.
 TEST(statistics, the_papers_sampler_is_biased) {
-    FOR_EACH_DEVICE(device) {
-        const test::TestScene scene = small("points");
-        const Moments reference = render_seeds(device, scene, options_for("exhaustive", 1), 1);
-        for (const Sampler& sampler : all_samplers()) {
-            if (!sampler.biased) continue;
-            const Statistics s = judge(
-                render_seeds(device, scene, options_for(sampler.name, 4), 120), reference, scene);
-            EXPECT_LT(s.smallest_pixel, 1e-6) << sampler.name;
-            EXPECT_LT(s.mean, 1e-6) << sampler.name;
-            EXPECT_LT(s.bias, -0.001) << sampler.name;
-        }
+    const Device& device = test::devices().front();
+    const test::TestScene scene = small("points");
+    const Moments reference = render_seeds(device, scene, options_for("exhaustive", 1), 1);
+    for (const Sampler& sampler : all_samplers()) {
+        if (!sampler.biased) continue;
+        const Statistics s =
+            judge(render_seeds(device, scene, options_for(sampler.name, 4), 120), reference, scene);
+        EXPECT_LT(s.smallest_pixel, 1e-6) << sampler.name;
+        EXPECT_LT(s.mean, 1e-6) << sampler.name;
+        EXPECT_LT(s.bias, -0.001) << sampler.name;
     }
 }
 
@@ -292,47 +290,44 @@ TEST(statistics, reflections_are_unbiased) {
 // Where light samples alone make fireflies.
 TEST(statistics, reflections_lower_the_variance) {
     const test::TestScene scene = polished(0.04f, false);
-    FOR_EACH_DEVICE(device) {
-        double variance[2] = {};
-        for (const bool reflections : {false, true}) {
-            RenderOptions options = options_for("lighttree", 4);
-            options.hide_emitters = true;
-            options.reflections = reflections;
-            const Moments found = render_seeds(device, scene, options, 20);
-            for (std::size_t i = 0; i + 1 < found.sum.size(); ++i)
-                variance[reflections] += found.variance(i);
-        }
-        EXPECT_LT(variance[1], variance[0] / 4);
+    const Device& device = test::devices().front();
+    double variance[2] = {};
+    for (const bool reflections : {false, true}) {
+        RenderOptions options = options_for("lighttree", 4);
+        options.hide_emitters = true;
+        options.reflections = reflections;
+        const Moments found = render_seeds(device, scene, options, 20);
+        for (std::size_t i = 0; i + 1 < found.sum.size(); ++i)
+            variance[reflections] += found.variance(i);
     }
+    EXPECT_LT(variance[1], variance[0] / 4);
 }
 
 // The same against light samples alone where something is in between, and normals are smooth.
 TEST(statistics, reflections_are_hidden_as_lights_are) {
     const test::TestScene scene = polished(0.16f, true);
-    FOR_EACH_DEVICE(device) {
-        RenderOptions options = options_for("exhaustive", 1);
-        options.hide_emitters = true;
-        options.reflections = false;
-        const Moments alone = render_seeds(device, scene, options, 150);
-        options.sampler = "adaptive";
-        options.reflections = true;
-        expect_unbiased(judge(render_seeds(device, scene, options, 120), alone, scene));
-    }
+    const Device& device = test::devices().front();
+    RenderOptions options = options_for("exhaustive", 1);
+    options.hide_emitters = true;
+    options.reflections = false;
+    const Moments alone = render_seeds(device, scene, options, 150);
+    options.sampler = "adaptive";
+    options.reflections = true;
+    expect_unbiased(judge(render_seeds(device, scene, options, 120), alone, scene));
 }
 
 // Jittered pixel samples estimate the same image whatever the light sampler.
 TEST(statistics, jittered_samples_are_unbiased) {
-    FOR_EACH_DEVICE(device) {
-        const test::TestScene scene = small("oriented");
-        RenderOptions exhaustive = options_for("exhaustive", 1);
-        exhaustive.spp = 64;
-        exhaustive.pixel_centre = false;
-        RenderOptions defensive = options_for("contribution-defensive", 2);
-        defensive.spp = 3;
-        defensive.pixel_centre = false;
-        expect_unbiased(judge(render_seeds(device, scene, defensive, 120),
-                              render_seeds(device, scene, exhaustive, 20), scene));
-    }
+    const Device& device = test::devices().front();
+    const test::TestScene scene = small("oriented");
+    RenderOptions exhaustive = options_for("exhaustive", 1);
+    exhaustive.spp = 64;
+    exhaustive.pixel_centre = false;
+    RenderOptions defensive = options_for("contribution-defensive", 2);
+    defensive.spp = 3;
+    defensive.pixel_centre = false;
+    expect_unbiased(judge(render_seeds(device, scene, defensive, 120),
+                          render_seeds(device, scene, exhaustive, 20), scene));
 }
 
 }  // namespace manylight
