@@ -155,7 +155,7 @@ LightNode join(const LightNode& a, const LightNode& b) {
     node.kind = NODE_IS_INFINITE(a) ? NODE_DIRECTIONS : NODE_GROUP;
     const float sum = phi(a) + phi(b);
     const float wa = sum > 0 ? phi(a) / sum : 0.5f;
-    const float wb = 1 - wa;
+    const float wb = sum > 0 ? phi(b) / sum : 0.5f;
     const glm::vec3 ca(a.centre);
     const glm::vec3 cb(b.centre);
     const glm::vec3 apart = cb - ca;
@@ -233,9 +233,9 @@ class Builder {
         const std::size_t right = index + 2 * (middle - begin);
         const auto build_right = [&] { build_node(right, middle, end, depth + 1); };
         if (end - begin >= task_size && depth < task_depth_) {
-            const std::future<void> task = std::async(std::launch::async, build_right);
+            std::future<void> task = std::async(std::launch::async, build_right);
             build_node(left, begin, middle, depth + 1);
-            task.wait();
+            task.get();
         } else {
             build_node(left, begin, middle, depth + 1);
             build_right();

@@ -13,6 +13,7 @@ namespace manylight {
 namespace {
 
 constexpr std::size_t items_per_batch = std::size_t{1} << 16;  // whose rays the caches hold
+constexpr std::size_t most_cut_lights = std::size_t{1} << 22;  // draws have 23 bits for a node
 constexpr std::size_t default_budget = std::size_t{2} << 30;
 
 template <class T>
@@ -84,6 +85,9 @@ Plan make_plan(const DeviceInfo& device, const Scene& scene, const WideBvh& bvh,
     const Tiles tiles = all_tiles(options.width, options.height, size);
     const auto lights = static_cast<uint>(scene.lights.size());
     Plan plan;
+    if (sampler.table == Table::cuts && scene.lights.size() > most_cut_lights)
+        throw InputError("{}: it has {} lights, and sampler {} takes {} at most", scene.file,
+                         scene.lights.size(), options.sampler, most_cut_lights);
     if (options.estimates_error() && options.spp < 2)
         throw InputError("--spp {}: the error is estimated from pairs of pixel samples",
                          options.spp);

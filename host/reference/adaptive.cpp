@@ -26,7 +26,9 @@ glm::dvec3 widened_brdf(const Material& m, const glm::dvec3& n, const glm::dvec3
                         const glm::dvec3& wo, double spread) {
     const glm::dvec3 base(m.base_color);
     if (m.base_color.w == 0 && m.specular == 0) return base / glm::pi<double>();
-    const glm::dvec3 h = glm::normalize(wi + wo);
+    const glm::dvec3 sum = wi + wo;
+    if (glm::dot(sum, sum) < 1e-20) return glm::dvec3(0);  // from behind
+    const glm::dvec3 h = glm::normalize(sum);
     const double a2 = double{m.roughness} * m.roughness + spread / 4;
     const double n_h = glm::dot(n, h);
     const double n_l = std::max(glm::dot(n, wi), 0.0);

@@ -193,7 +193,7 @@ static NAMED(Color) NAMED(reflect)(const NAMED(Points) * p, REAL wx, REAL wy, RE
         const REAL width = fma(a2 * n_h, n_h, NAMED(dot3)(sx, sy, sz, sx, sy, sz));
         const REAL in = n_in + NAMED(root)(fma(1.0f - a2, n_in * n_in, a2));
         const REAL out = n_out + NAMED(root)(fma(1.0f - a2, n_out * n_out, a2));
-        const REAL across = NAMED(inverse)(max(width, (REAL)(1e-30f)));
+        const REAL across = NAMED(inverse)(max(width, 0.5f * a2));  // w = -v: no h
         REAL lobe = M_1_PI_F * a2 * across * across * NAMED(inverse)(in * out);
 #if HAS_REFLECTIONS
         const REAL ratio = 0.5f * lobe * in * solid_angle;  // light_share() of lib/brdf.h
