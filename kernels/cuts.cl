@@ -113,8 +113,9 @@ static Trials probe(BVH_PARAMETERS, __global const LightNode* nodes, __global co
 
 static float visible_root(Trials t) { return sqrt((t.passed + PRIOR_SHARE) / (t.traced + 1.0f)); }
 
-// cut_nodes[tile * CUT_CAPACITY + slot], in tree order, and probes[...]; cut_sizes[tile], 0 where
-// nothing is hit. A tile with up to CUT_CAPACITY lights has every light as a node.
+// cut_nodes[tile * CUT_CAPACITY + slot], in tree order, and probes[...]; cut_sizes[tile]. With up
+// to cut_size lights, every light is a node. Where nothing is hit, the roots are the cut: later
+// pixel samples may hit something.
 KERNEL void cuts_make(Tiles tiles, Camera camera, __global const Surface* surfaces,
                       __global const Material* materials, __global const Light* lights,
                       uint light_count, __global const LightNode* nodes, uint root_count,
@@ -124,13 +125,20 @@ KERNEL void cuts_make(Tiles tiles, Camera camera, __global const Surface* surfac
     if (tile >= tiles.count) return;
     uint items[REPRESENTATIVES];
     const uint receiver_count = find_representatives(tiles, tile, surfaces, items);
-    cut_sizes[tile] = 0u;
-    if (receiver_count == 0u) return;
+    __global uint* out = cut_nodes + tile * CUT_CAPACITY;
+    __global Trials* out_trials = probes + tile * CUT_CAPACITY;
+    const Trials none = {0.0f, 0.0f};
+    if (receiver_count == 0u) {
+        for (uint i = 0u; i < root_count; ++i) {
+            out[i] = i == 0u ? 0u : second_root;
+            out_trials[i] = none;
+        }
+        cut_sizes[tile] = root_count;
+        return;
+    }
     Receiver receivers[REPRESENTATIVES];
     for (uint i = 0u; i < receiver_count; ++i)
         receivers[i] = make_receiver(surfaces + items[i], materials, camera);
-    __global uint* out = cut_nodes + tile * CUT_CAPACITY;
-    __global Trials* out_trials = probes + tile * CUT_CAPACITY;
     const uint tile_bits = random_bits(tiles.first + tile, 0u, RANDOM_PROBES, seed).x;
     if (light_count <= cut_size) {
         const uint node_count = 2u * light_count - root_count;
@@ -146,7 +154,6 @@ KERNEL void cuts_make(Tiles tiles, Camera camera, __global const Surface* surfac
     }
     Cut cut;
     cut.size = root_count;
-    const Trials none = {0.0f, 0.0f};
     for (uint i = 0u; i < root_count; ++i) {
         cut.nodes[i] = i == 0u ? 0u : second_root;
         cut.scores[i] = nodes[cut.nodes[i]].count > 1u ? INFINITY : 0.0f;

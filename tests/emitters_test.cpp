@@ -311,6 +311,13 @@ TEST(emitters, cells_cover_the_emitter) {
     EXPECT_EQ(met.size(), 84u);
 }
 
+// Normals of smaller ones cannot be told.
+TEST(emitters, triangles_without_extent_give_no_light) {
+    const float tiny = 1e-10f;
+    EXPECT_EQ(emitters_of({{0, 0, 0}, {tiny, 0, 0}, {0, tiny, 0}}).lights.size(), 0u);
+    EXPECT_EQ(emitters_of({{0, 0, 0}, {1e-8f, 0, 0}, {0, 1e-8f, 0}}).lights.size(), 1u);
+}
+
 // Of each emissive triangle: as many cells as lights, and the lights' areas.
 TEST(emitters, areas_of_cells) {
     const glm::vec3 u(1.1f, 0.2f, 0);

@@ -35,6 +35,33 @@ TEST(frame, same_seed_gives_the_same_bits) {
     }
 }
 
+// No buffer of a batch is larger than the device allows.
+TEST(frame, batches_fit_the_devices_buffers) {
+    const test::TestScene& scene = test::scene_named("many");
+    RenderOptions options = small_options("adaptive");
+    options.width = 640;
+    options.height = 640;
+    const WideBvh bvh = build_wide_bvh(scene.scene, 8, 8, 10);
+    DeviceInfo info = test::devices().front().info();
+    const Plan whole = make_plan(info, scene.scene, bvh, options);
+    EXPECT_EQ(whole.batches, 1u);
+    EXPECT_EQ(whole.tiles_per_batch, 400u);
+    info.max_allocation = 8'000'000;
+    const Plan parts = make_plan(info, scene.scene, bvh, options);
+    EXPECT_LE(parts.tiles_per_batch * 256 * CELLS_PER_TILE * sizeof(uint), info.max_allocation);
+    EXPECT_GT(parts.tiles_per_batch, 50u);
+}
+
+// Draws have no room for more nodes.
+TEST(frame, too_many_lights_for_cuts_are_refused) {
+    Scene scene = test::scene_named("points").scene;
+    const WideBvh bvh = build_wide_bvh(scene, 8, 8, 10);
+    scene.lights.resize((std::size_t{1} << 22) + 1);
+    EXPECT_THROW(
+        (void)make_plan(test::devices().front().info(), scene, bvh, small_options("adaptive")),
+        InputError);
+}
+
 // Less memory means more batches, not another image.
 TEST(frame, batches_do_not_change_the_image) {
     FOR_EACH_DEVICE(device)

@@ -47,6 +47,23 @@ TEST(lights, point_inverse_square_and_cosine) {
     }
 }
 
+// A range beyond all others is none, for every sampler.
+TEST(lights, boundless_ranges) {
+    const auto image = [](const Device& device, std::string_view sampler, float range) {
+        test::TestScene scene = plane_under([](GltfWriter& out) {
+            out.add_point({0, 2, 0}, glm::vec3(7));
+        });
+        scene.scene.lights[0].axis.w = range;
+        RenderOptions options;
+        options.sampler = sampler;
+        return test::render(device, scene, options).image.values;
+    };
+    FOR_EACH_DEVICE(device)
+    for (const Sampler& sampler : all_samplers())
+        EXPECT_EQ(image(device, sampler.name, 3e25f), image(device, sampler.name, 0))
+            << sampler.name;
+}
+
 // Below the plane: nothing.
 TEST(lights, behind_the_surface) {
     const test::TestScene scene = plane_under([](GltfWriter& out) {

@@ -330,4 +330,25 @@ TEST(statistics, jittered_samples_are_unbiased) {
                           render_seeds(device, scene, exhaustive, 20), scene));
 }
 
+// A leaf that covers half a pixel of an empty image: what the first pixel sample of a tile misses,
+// later ones may hit.
+TEST(statistics, tiles_that_are_missed_first_are_seen_later) {
+    const test::TestScene scene = test::make_scene(
+        [](GltfWriter& out) {
+            Mesh leaf;
+            leaf.add_quad({0.2f, 0, 0}, {0.5f, 0, 0}, {0, 1, 0});
+            out.add_mesh("leaf", leaf, out.add_diffuse(glm::vec3(0.5f)));
+            for (int i = 0; i < 300; ++i)
+                out.add_point({std::sin(i), 1 + std::cos(i), 1 + 0.01f * i}, glm::vec3(1));
+            out.add_camera("front", {0.5f, 0.5f, 10}, {0.5f, 0.5f, 0}, 0.1f, 1);
+        },
+        1, 1);
+    const Device& device = test::devices().front();
+    RenderOptions options = options_for("lighttree", 4);
+    options.pixel_centre = false;
+    const Moments other = render_seeds(device, scene, options, 600);
+    options.sampler = "adaptive";
+    expect_unbiased(judge(render_seeds(device, scene, options, 600), other, scene));
+}
+
 }  // namespace manylight

@@ -9,7 +9,8 @@ namespace {
 
 constexpr unsigned wide_image = 640;  // pixels: tiles are small, one probe per node will do
 constexpr uint most_samples = 64;     // on average, of one draw of all nodes
-constexpr std::size_t many_packets = std::size_t{1} << 17;  // of one launch, few of them in use
+constexpr std::size_t budget_pixels = std::size_t{1} << 15;  // are enough to find the mean from
+constexpr std::size_t many_packets = std::size_t{1} << 17;   // of one launch, few of them in use
 
 // Pixels with many samples are drawn several times.
 uint rounds_for(uint light_samples) { return (light_samples + most_samples - 1) / most_samples; }
@@ -125,19 +126,18 @@ std::size_t Adaptive::packets_for(std::size_t tiles, uint light_samples) {
 // Finds the factor for which these pixels would get one draw each on average.
 void Adaptive::set_budget(const std::vector<Expectation>& pixels) {
     double luminance = 0;
-    std::size_t lit = 0;
-    for (const Expectation& e : pixels) {
-        luminance += e.luminance;
-        lit += e.variance > 0;
-    }
+    for (const Expectation& e : pixels) luminance += e.luminance;
     if (!(luminance > 0)) return;
     const double exposure = 0.5 * static_cast<double>(pixels.size()) / luminance;
     std::vector<double> deviations;
-    deviations.reserve(lit);
-    for (const Expectation& e : pixels)
+    const std::size_t step = pixels.size() / budget_pixels | 1;  // odd: of all cells
+    for (std::size_t i = 0; i < pixels.size(); i += step) {
+        const Expectation& e = pixels[i];
         if (e.variance > 0)
             deviations.push_back(
                 exposure * std::sqrt(e.variance / (std::pow(exposure * e.luminance, 2) + 0.01)));
+    }
+    if (deviations.empty()) return;
     double low = 0;
     double high = 1;
     const auto mean_draws = [&](double factor) {
@@ -147,7 +147,7 @@ void Adaptive::set_budget(const std::vector<Expectation>& pixels) {
         return sum / static_cast<double>(deviations.size());
     };
     while (mean_draws(high) < 1 && high < 1e30) high *= 2;
-    for (int i = 0; i < 40; ++i) {
+    for (int i = 0; i < 20; ++i) {
         const double middle = (low + high) / 2;
         (mean_draws(middle) < 1 ? low : high) = middle;
     }

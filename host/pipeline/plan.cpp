@@ -47,13 +47,14 @@ std::size_t texture_bytes(const Scene& scene) {
 
 // Throws unless the device can hold each of the scene's and the image's buffers.
 void check_buffers(const DeviceInfo& device, const Scene& scene, const WideBvh& bvh,
-                   std::size_t image) {
+                   std::size_t light_tree, std::size_t image) {
     const std::pair<const char*, std::size_t> buffers[] = {
         {"BVH nodes", bytes_of(bvh.nodes)},
         {"triangles", bytes_of(bvh.blocks)},
         {"vertices", bytes_of(scene.vertices)},
         {"indices", bytes_of(scene.indices)},
         {"lights", bytes_of(scene.lights)},
+        {"light tree", light_tree},
         {"textures", bytes_of(scene.texels)},
         {"texture coordinates", coordinate_bytes(scene)},
         {"image", image}};
@@ -100,10 +101,12 @@ Plan make_plan(const DeviceInfo& device, const Scene& scene, const WideBvh& bvh,
                        bytes_of(scene.vertex_normals) + bytes_of(scene.indices) +
                        bytes_of(scene.triangle_materials) + bytes_of(scene.materials) +
                        bytes_of(scene.lights) + bytes_of(scene.cell_areas) + texture_bytes(scene);
-    if (sampler.uses_tree()) plan.scene_bytes += 2 * sizeof(LightNode) * lights;
+    const std::size_t light_tree = sampler.uses_tree() ? 2 * sizeof(LightNode) * lights : 0;
+    plan.scene_bytes += light_tree;
     plan.image_bytes = std::size_t{options.width} * options.height *
                        ImageSum::pixel_bytes(options.estimates_error());
-    check_buffers(device, scene, bvh, std::size_t{options.width} * options.height * sizeof(float4));
+    check_buffers(device, scene, bvh, light_tree,
+                  std::size_t{options.width} * options.height * sizeof(float4));
 
     const bool two_surfaces = plan.centres && options.jitters();
     const bool cuts = sampler.table == Table::cuts;
@@ -127,9 +130,11 @@ Plan make_plan(const DeviceInfo& device, const Scene& scene, const WideBvh& bvh,
     const std::size_t fixed = plan.total_bytes() + ray_bytes;
     if (fixed + tile_bytes > budget)
         throw InputError(
-            "--memory: {}{} is too little: the scene needs {}, the image {}, and one tile {}{}",
+            "--memory: {}{} is too little: the scene needs {}, the image {}, rays in work {}, and "
+            "one tile {}{}",
             mebibytes(budget), options.memory > 0 ? "" : " (the default)",
-            mebibytes(plan.scene_bytes), mebibytes(plan.image_bytes), mebibytes(tile_bytes),
+            mebibytes(plan.scene_bytes), mebibytes(plan.image_bytes), mebibytes(ray_bytes),
+            mebibytes(tile_bytes),
             plan.clusters ? " (a smaller --max-depth or --tile-size needs less)" : "");
     if (tile_matrix > device.max_allocation)
         throw InputError(
@@ -141,6 +146,9 @@ Plan make_plan(const DeviceInfo& device, const Scene& scene, const WideBvh& bvh,
         cuts ? tiles.count : std::clamp<std::size_t>(items_per_batch / tile_items, 1, tiles.count);
     most = std::min(most, (budget - fixed) / tile_bytes);
     if (tile_matrix > 0) most = std::min(most, device.max_allocation / tile_matrix);
+    const std::size_t largest_buffer =
+        std::max(tile_items * surface_bytes, cuts ? Adaptive::tile_bytes(lights) : std::size_t{0});
+    most = std::clamp<std::size_t>(device.max_allocation / largest_buffer, 1, most);
     plan.tiles_per_batch = static_cast<unsigned>(most);
     plan.batches = static_cast<unsigned>((tiles.count + most - 1) / most);
     plan.matrix_bytes += most * tile_matrix;

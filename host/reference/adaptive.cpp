@@ -114,7 +114,7 @@ glm::dvec3 node_estimate(const LightTree& tree, uint index, const Point& point) 
                        std::sqrt(softened);
         } else {
             const double oriented = 1 - double{node.axis.w};
-            const double delta = std::max(oriented * oriented - glm::dot(axis, axis), 0.0) / 3;
+            const double delta = std::max(oriented * oriented - glm::dot(axis, axis), 1e-6) / 3;
             emission = node.axis.w;
             if (oriented > 0)
                 emission += soft(-glm::dot(axis, towards), spread * oriented * oriented + delta);
@@ -148,7 +148,11 @@ TileCut make_cut(const LightTree& tree, const Scene& scene, const Tracer& tracer
             for (uint x = x0; x < std::min(x0 + tiles.size, tiles.width); ++x)
                 if (surfaces[item_of(tiles, x, y)].position.w >= 0)
                     best = std::min(best, item_of(tiles, x, y) % area);
-        if (best == area) return out;
+        if (best == area) {
+            out.nodes = tree.roots;
+            out.probes.resize(tree.roots.size());
+            return out;
+        }
         representatives.push_back(&surfaces[tile * area + best]);
     }
     const uint tile_bits = random_bits(tiles.first + tile, 0, 0xfffffffeu, seed)[0];

@@ -23,6 +23,9 @@ glm::vec3 radiance_of_part(const Scene& scene, const Emitter& e, glm::dvec2 corn
            glm::vec3(mean_of_part(scene, texture, corner, u, v, triangle));
 }
 
+// A triangle of less, m2, gives no light that single precision could tell.
+constexpr double least_area = 1e-18;
+
 // Where an emitter is on the texture of its emission, and its mean radiance.
 void find_texture(const Scene& scene, Emitter& e) {
     const TextureMap* map = emission_map(scene, e);
@@ -51,7 +54,7 @@ std::vector<Emitter> find_emitters(const Scene& scene) {
             extent = glm::max(extent, glm::abs(e.vertices[corner]));
         }
         const double area = glm::length(glm::dvec3(glm::cross(e.edge1(), e.edge2()))) / 2;
-        if (!(area > 0)) continue;
+        if (!(area > least_area)) continue;
         find_texture(scene, e);
         if (e.radiance == glm::vec3(0)) continue;
         e.offset = OFFSET_SCALE * std::max({extent.x, extent.y, extent.z});

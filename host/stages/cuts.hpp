@@ -31,7 +31,7 @@ struct CutOptions {
 };
 
 /// Stage cuts: for each tile the nodes of the light trees that its pixels choose from, and first
-/// shadow rays to them. From the roots on, the node with the largest bound on its contribution
+/// shadow rays to them. From the roots on, the node with the largest estimated contribution
 /// (averaged over representative pixels) times the root of its visibility is split.
 class CutStage {
   public:

@@ -72,7 +72,7 @@ static Direct_16 direct_16(const Lights_16* l, const Points_16* p, const Origins
     float16 wx = dx * inverse, wy = dy * inverse, wz = dz * inverse;
     float16 emitted = zero;  // times the distance squared
 #if HAS_POINT || HAS_SPOT
-    const float16 ratio = squared * inverse_16(max(l->aw * l->aw, 1e-30f));
+    const float16 ratio = squared * inverse_16(clamp(l->aw * l->aw, 1e-30f, 1e30f));
     const float16 within = select(clamp(1.0f - ratio * ratio, 0.0f, 1.0f), one, l->aw == 0.0f);
 #endif
 #if HAS_POINT

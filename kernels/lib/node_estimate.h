@@ -279,7 +279,7 @@ static REAL NODE_NAMED(node_geometry)(const NODE* node, const NAMED(Points) * p,
     if (ANY_NODE(cosines)) {
         const NODE_REAL o = 1.0f - node->iso, o2 = o * o;
         const NODE_REAL axis2 = node->ax * node->ax + node->ay * node->ay + node->az * node->az;
-        const NODE_REAL delta = max(o2 - axis2, 0.0f) / 3.0f;
+        const NODE_REAL delta = max(o2 - axis2, 1e-6f) / 3.0f;
         const REAL lobe = NAMED(soft)(along, *spread * o2 + delta);
         REAL mixed = node->iso + WHERE_NODE(node->iso < 1.0f, lobe, (REAL)(0.0f));
 #if HAS_SPOT

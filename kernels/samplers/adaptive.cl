@@ -83,8 +83,8 @@ static bool wants_children(__global const LightNode* node, const Points_16* p, f
     const float16 dx = node->centre.x - p->px, dy = node->centre.y - p->py,
                   dz = node->centre.z - p->pz;
     const float16 inverse = inverse_root_16(max(dot3_16(dx, dy, dz, dx, dy, dz), 1e-30f));
-    const float16 near =
-        NODE_IS_INFINITE(*node) ? (float16)(node->intensity.w) : min(node->intensity.w * inverse, 1.0f);
+    const float16 near = NODE_IS_INFINITE(*node) ? (float16)(node->intensity.w)
+                                                 : min(node->intensity.w * inverse, 1.0f);
     return lanes_16(weight * near > limit) != 0u;
 }
 
