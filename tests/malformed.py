@@ -126,6 +126,31 @@ def patched(offset, data):
                "data:application/octet-stream;base64," + base64.b64encode(changed).decode())
 
 
+def sparse(count=1, componentType=5123, offset=0, stride=...):
+    """Sparse positions: numbers from the indices' bytes, values from the positions'."""
+    def change(document):
+        document["bufferViews"].append({"buffer": 0, "byteOffset": 48, "byteLength": 4})
+        document["bufferViews"].append({"buffer": 0, "byteLength": 12})
+        document["accessors"][0]["sparse"] = {
+            "count": count,
+            "indices": {"bufferView": 1 if offset == 4 else 2, "byteOffset": offset,
+                        "componentType": componentType},
+            "values": {"bufferView": 0 if stride != ... else 3}}
+    return change
+
+
+def compressed(whole=48, **changes):
+    """Positions compressed by meshopt: bytes that hold none."""
+    def change(document):
+        document["buffers"].append({"byteLength": whole, "extensions": {
+            "EXT_meshopt_compression": {"fallback": True}}})
+        document["bufferViews"][0] = {"buffer": 1, "byteLength": whole, "extensions": {
+            "EXT_meshopt_compression": dict({
+                "buffer": 0, "byteLength": 48, "byteStride": 12, "count": 4,
+                "mode": "ATTRIBUTES"}, **changes)}}
+    return change
+
+
 POSITION, INDEX = ["accessors", 0], ["accessors", 1]
 VIEW, BUFFER = ["bufferViews", 0], ["buffers", 0]
 MATERIAL, PBR = ["materials", 0], ["materials", 0, "pbrMetallicRoughness"]
@@ -293,7 +318,7 @@ CHANGES = {
     "index beyond the vertices": (patched(48 + 4, struct.pack("<H", 4)), ["element 2", "4"]),
     "normals too few": (lambda d: (d["accessors"].append(dict(d["accessors"][0], count=3)),
                                    d["meshes"][0]["primitives"][0]["attributes"].update(NORMAL=3)),
-                        ["NORMAL", "3 normals for 4"]),
+                        ["NORMAL", "3 values for 4"]),
     "position not a number": (patched(4, NAN), ["POSITION", "element 0"]),
     "position infinite": (patched(24, INF), ["POSITION", "element 2"]),
     "accessor type": (put(POSITION + ["type"], "VEC5"), ["accessors[0].type", "VEC5"]),
@@ -309,10 +334,32 @@ CHANGES = {
     "accessor offset beyond": (put(POSITION + ["byteOffset"], 48), ["accessors[0]", "48"]),
     "accessor offset 2^63": (put(POSITION + ["byteOffset"], 2**63), ["accessors[0]", str(2**63)]),
     "accessor view beyond": (put(POSITION + ["bufferView"], 2), ["accessors[0].bufferView", "2"]),
-    "accessor without view": (put(POSITION + ["bufferView"], ...), ["POSITION", "no bufferView"]),
-    "accessor sparse": (put(POSITION + ["sparse"], {
-        "count": 1, "indices": {"bufferView": 1, "componentType": 5123}, "values": {"bufferView": 0}}),
-        ["POSITION", "sparse"]),
+    "accessor without view": (lambda d: (put(POSITION + ["bufferView"], ...)(d),
+                                         put(POSITION + ["count"], 1 << 30)(d)),
+                              ["accessors[0].count", str(1 << 30)]),
+    "sparse count 0": (sparse(count=0), ["accessors[0].sparse.count", "0"]),
+    "sparse count beyond": (sparse(count=9), ["accessors[0].sparse.count", "9"]),
+    "sparse indices of float": (sparse(componentType=5126), ["sparse.indices.componentType", "5126"]),
+    "sparse indices beyond": (sparse(count=3), ["sparse.indices", "bufferView 2"]),
+    "sparse values with a stride": (sparse(stride=12), ["sparse.values", "byteStride"]),
+    "sparse element beyond": (lambda d: (sparse(offset=4)(d), put(POSITION + ["count"], 2)(d)),
+                              ["POSITION", "sparse element 0 is number 2"]),
+    "meshopt mode": (compressed(mode="CUBES"), ["EXT_meshopt_compression.mode", "CUBES"]),
+    "meshopt filter": (compressed(filter="NOISE"), ["EXT_meshopt_compression.filter", "NOISE"]),
+    "meshopt filter's stride": (compressed(filter="OCTAHEDRAL"), ["byteStride", "12"]),
+    "meshopt stride": (compressed(byteStride=6), ["byteStride", "6"]),
+    "meshopt count": (compressed(count=5), ["count", "5 elements"]),
+    "meshopt buffer beyond": (compressed(byteOffset=50), ["EXT_meshopt_compression", "50"]),
+    "meshopt without data": (compressed(buffer=1), ["EXT_meshopt_compression.buffer", "no data"]),
+    "meshopt bytes": (compressed(), ["bufferViews[0]", "do not hold 4 ATTRIBUTES"]),
+    "meshopt bomb": (compressed(byteLength=1, count=1 << 20, whole=12 << 20),
+                     ["byteLength", "1 bytes cannot hold"]),
+    "fallback buffer without compression": (
+        lambda d: (compressed()(d), put(VIEW + ["extensions"], ...)(d)), ["bufferViews[0]", "no data"]),
+    "instances of different numbers": (
+        lambda d: d["nodes"][0].update(extensions={"EXT_mesh_gpu_instancing": {
+            "attributes": {"TRANSLATION": 0, "SCALE": 3}}}) or d["accessors"].append(
+                dict(d["accessors"][0], count=3)), ["EXT_mesh_gpu_instancing.SCALE", "3 values for 4"]),
     "accessor min of two": (put(POSITION + ["min"], [0, 0]), ["accessors[0].min", "2"]),
     "view buffer beyond": (put(VIEW + ["buffer"], 1), ["bufferViews[0].buffer", "1"]),
     "view length 0": (put(VIEW + ["byteLength"], 0), ["bufferViews[0].byteLength"]),

@@ -43,6 +43,7 @@ std::string view_options(const ChartArguments& arguments, const LoadedScene& loa
     if (scene.shift != std::pair(0.0, 0.0))
         out += fmt::format(" --shift {},{}", scene.shift.first, scene.shift.second);
     if (scene.emitter_points) out += fmt::format(" --emitter-points {}", *scene.emitter_points);
+    if (scene.seconds) out += fmt::format(" --at {}", *scene.seconds);
     if (!scene.device.empty()) out += " --device " + quote(scene.device);
     if (scene.threads > 0) out += fmt::format(" --threads {}", scene.threads);
     out += fmt::format(" --width {} --height {}", loaded.width, loaded.height);

@@ -19,6 +19,7 @@ struct SceneArguments {
     std::string file;
     std::string camera;
     std::optional<unsigned> emitter_points;
+    std::optional<double> seconds;  // of the file's first animation; none: at rest
     std::string device;
     unsigned threads = 0;
     unsigned width = 0;                        // 0: from the height and the camera's aspect

@@ -91,6 +91,8 @@ void add_view(CLI::App& command, SceneArguments& scene, unsigned height = 512) {
                     "replace emissive triangles by N oriented points of equal power; 0: area "
                     "lights (default: the file's wish, or 0)")
         ->check(whole(0, 1 << 24));
+    command.add_option("--at", scene.seconds,
+                       "SECONDS of the file's first animation (default: everything at rest)");
     command.add_option("--device", scene.device,
                        "OpenCL device: number or part of its name, see 'manylight devices'");
     command.add_option("--threads", scene.threads, "processors that a CPU device may use")

@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <set>
 #include <string>
 #include <string_view>
@@ -19,7 +20,9 @@ namespace manylight {
 /// Emissive triangles are no lights yet (see add_emitters), and powers are not set. The first
 /// scene's extras may hold "emitter_points", the number of oriented points that its emitters are
 /// meant to be rendered with.
-[[nodiscard]] Scene load_scene(const std::string& path);
+///
+/// `seconds`: the moment of the file's first animation; none: everything at rest.
+[[nodiscard]] Scene load_scene(const std::string& path, std::optional<double> seconds = {});
 
 /// A glTF file before it has a meaning.
 struct GltfFile {
@@ -43,6 +46,10 @@ struct GltfFile {
 
 /// The extensions that are rendered.
 [[nodiscard]] const std::set<std::string>& known_extensions();
+
+/// Whether a buffer has no data: it only says how large others are when decompressed
+/// (EXT_meshopt_compression).
+[[nodiscard]] bool is_fallback_buffer(const nlohmann::json& buffer);
 
 /// Checks all values of the JSON: types, ranges, indices, node hierarchy, URIs, versions.
 void check_gltf(const GltfFile& file);

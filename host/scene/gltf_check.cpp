@@ -46,9 +46,12 @@ class Checker {
 
   private:
     static constexpr const char* lights_extension = "KHR_lights_punctual";
+    static constexpr const char* compression = "EXT_meshopt_compression";
+    static constexpr const char* instancing = "EXT_mesh_gpu_instancing";
     static constexpr const char* emitter_points_key = "emitter_points";
     static constexpr std::uint64_t most_emitter_points = 1u << 24;
     static constexpr std::uint64_t most_coordinate_sets = 15;
+    static constexpr std::uint64_t most_zeros = 1u << 24;
     static constexpr std::size_t none = ~std::size_t{0};
 
     [[nodiscard]] std::size_t count(const char* kind) const {
@@ -117,26 +120,86 @@ class Checker {
 
     void buffer(const JsonValue& buffer, std::size_t i) {
         if (buffer["byteLength"].integer() == 0) buffer["byteLength"].refuse("0 is no length");
+        if (is_fallback_buffer(file_.json["buffers"][i])) return;
         if (buffer.has("uri"))
             uri(buffer["uri"], true);
         else if (!file_.is_binary || i != 0)
             buffer.refuse("'uri' is missing (only the first buffer of a .glb has none)");
     }
 
-    void buffer_view(const JsonValue& view, std::size_t) {
-        const std::size_t buffer = view["buffer"].index(count("buffers"), "buffer");
-        const std::uint64_t offset = view.has("byteOffset") ? view["byteOffset"].integer() : 0;
-        const std::uint64_t length = view["byteLength"].integer();
-        if (length == 0) view["byteLength"].refuse("0 is no length");
+    // The part of a buffer that `object` names; returns the buffer's index.
+    std::size_t part_of_buffer(const JsonValue& object) {
+        const std::size_t buffer = object["buffer"].index(count("buffers"), "buffer");
+        const std::uint64_t offset = object.has("byteOffset") ? object["byteOffset"].integer() : 0;
+        const std::uint64_t length = object["byteLength"].integer();
+        if (length == 0) object["byteLength"].refuse("0 is no length");
         const std::uint64_t size = root_["buffers"].at(buffer)["byteLength"].integer();
         if (offset > size || length > size - offset)
-            view.refuse("byteOffset {} and byteLength {} reach beyond buffer {} of {} bytes",
-                        offset, length, buffer, size);
+            object.refuse("byteOffset {} and byteLength {} reach beyond buffer {} of {} bytes",
+                          offset, length, buffer, size);
+        return buffer;
+    }
+
+    void buffer_view(const JsonValue& view, std::size_t) {
+        const std::size_t buffer = part_of_buffer(view);
+        if (view.has("extensions") && view["extensions"].object().has(compression)) {
+            compressed_view(view, view["extensions"][compression].object());
+        } else if (is_fallback_buffer(file_.json["buffers"][buffer])) {
+            view.refuse("buffer {} has no data", buffer);
+        }
         if (view.has("byteStride")) {
             const std::uint64_t stride = view["byteStride"].integer();
             if (stride < 4 || stride > 252 || stride % 4 != 0)
                 view["byteStride"].refuse("{} is no multiple of 4 within 4 and 252", stride);
         }
+    }
+
+    // EXT_meshopt_compression: what the decoder takes for granted, and what its data may grow to.
+    void compressed_view(const JsonValue& view, const JsonValue& in) {
+        const std::size_t buffer = part_of_buffer(in);
+        if (is_fallback_buffer(file_.json["buffers"][buffer]))
+            in["buffer"].refuse("buffer {} has no data", buffer);
+        const std::string mode = in["mode"].one_of({"ATTRIBUTES", "TRIANGLES", "INDICES"});
+        const std::string filter =
+            in.has("filter")
+                ? in["filter"].one_of({"NONE", "OCTAHEDRAL", "QUATERNION", "EXPONENTIAL"})
+                : "NONE";
+        const std::uint64_t stride = in["byteStride"].integer();
+        const std::uint64_t elements = in["count"].integer();
+        const bool attributes = mode == "ATTRIBUTES";
+        const bool fits = attributes ? stride > 0 && stride % 4 == 0 && stride <= 256
+                                     : stride == 2 || stride == 4;
+        if (!fits) in["byteStride"].refuse("{} is no stride of {}", stride, mode);
+        const bool filtered = filter == "NONE"         ? true
+                              : filter == "OCTAHEDRAL" ? stride == 4 || stride == 8
+                              : filter == "QUATERNION" ? stride == 8
+                                                       : true;
+        if (!attributes && filter != "NONE") in["filter"].refuse("{} cannot be filtered", mode);
+        if (!filtered) in["byteStride"].refuse("{} is no stride of {}", stride, filter);
+        if (mode == "TRIANGLES" && elements % 3 != 0)
+            in["count"].refuse("{} is no whole number of triangles", elements);
+        const std::uint64_t length = view["byteLength"].integer();
+        if (elements == 0 || elements != length / stride || length % stride != 0)
+            in["count"].refuse("{} elements of {} bytes are not the {} of the bufferView", elements,
+                               stride, length);
+        // 16 equal values of a byte take 2 bits.
+        if (length / 64 > in["byteLength"].integer())
+            in["byteLength"].refuse("{} bytes cannot hold {}", in["byteLength"].integer(), length);
+        decompressed_ += length;
+        if (decompressed_ > most_decompressed())
+            in["byteLength"].refuse("the file would decompress to more than {} bytes",
+                                    most_decompressed());
+        if (view.has("byteStride") && view["byteStride"].integer() != stride)
+            view["byteStride"].refuse("{} is not {}'s {}", view["byteStride"].integer(),
+                                      compression, stride);
+    }
+
+    [[nodiscard]] std::uint64_t most_decompressed() const {
+        std::uint64_t stored = 0;
+        for (std::size_t i = 0; i < count("buffers"); ++i)
+            if (!is_fallback_buffer(file_.json["buffers"][i]))
+                stored += root_["buffers"].at(i)["byteLength"].integer();
+        return 16 * stored + (std::uint64_t{1} << 28);
     }
 
     static std::size_t component_bytes(const JsonValue& type) {
@@ -169,24 +232,57 @@ class Checker {
         for (const char* key : {"min", "max"})
             if (accessor.has(key)) accessor[key].numbers(components);
         if (accessor.has("normalized")) accessor["normalized"].boolean();
-        const std::uint64_t offset =
-            accessor.has("byteOffset") ? accessor["byteOffset"].integer() : 0;
-        if (accessor.has("sparse")) (void)accessor["sparse"].object();
-        if (!accessor.has("bufferView")) return;
-        const std::size_t index = accessor["bufferView"].index(count("bufferViews"), "bufferView");
+        if (accessor.has("sparse")) sparse(accessor, component * components);
+        if (!accessor.has("bufferView")) {
+            if (elements > most_zeros)
+                accessor["count"].refuse("{} elements without a bufferView are more than {}",
+                                         elements, most_zeros);
+            return;
+        }
+        const std::size_t view = within_view(accessor, elements, component * components);
+        const JsonValue buffer_view = root_["bufferViews"].at(view);
+        if (buffer_view.has("byteStride") &&
+            buffer_view["byteStride"].integer() < component * components)
+            buffer_view["byteStride"].refuse("{} is less than the {} bytes of an element of {}",
+                                             buffer_view["byteStride"].integer(),
+                                             component * components, type);
+    }
+
+    // Elements in a buffer view; returns its index.
+    std::size_t within_view(const JsonValue& object, std::uint64_t elements,
+                            std::uint64_t element) {
+        const std::size_t index = object["bufferView"].index(count("bufferViews"), "bufferView");
         const JsonValue view = root_["bufferViews"].at(index);
+        const std::uint64_t offset = object.has("byteOffset") ? object["byteOffset"].integer() : 0;
         const std::uint64_t length = view["byteLength"].integer();
-        const std::uint64_t element = component * components;
-        const std::uint64_t stride =
-            view.has("byteStride") ? view["byteStride"].integer() : element;
-        if (stride < element)
-            view["byteStride"].refuse("{} is less than the {} bytes of an element of {}", stride,
-                                      element, type);
+        const std::uint64_t stride = std::max(
+            view.has("byteStride") ? view["byteStride"].integer() : element, std::uint64_t{1});
         // offset + (elements - 1) stride + element <= length, without overflow
         if (offset > length || element > length - offset ||
             elements - 1 > (length - offset - element) / stride)
-            accessor.refuse("count {} at byteOffset {} reaches beyond bufferView {} of {} bytes",
-                            elements, offset, index, length);
+            object.refuse("count {} at byteOffset {} reaches beyond bufferView {} of {} bytes",
+                          elements, offset, index, length);
+        return index;
+    }
+
+    void packed(const JsonValue& object, std::uint64_t elements, std::uint64_t element) {
+        const std::size_t view = within_view(object, elements, element);
+        if (root_["bufferViews"].at(view).has("byteStride"))
+            object["bufferView"].refuse("bufferView {} of sparse elements has a byteStride", view);
+    }
+
+    void sparse(const JsonValue& accessor, std::uint64_t element) {
+        const JsonValue sparse = accessor["sparse"].object();
+        const std::uint64_t elements = sparse["count"].integer();
+        if (elements == 0 || elements > accessor["count"].integer())
+            sparse["count"].refuse("{} is not within 1 and the accessor's {}", elements,
+                                   accessor["count"].integer());
+        const JsonValue indices = sparse["indices"].object();
+        const std::uint64_t type = indices["componentType"].integer();
+        if (type != 5121 && type != 5123 && type != 5125)
+            indices["componentType"].refuse("{} is no unsigned integer type", type);
+        packed(indices, elements, component_bytes(indices["componentType"]));
+        packed(sparse["values"].object(), elements, element);
     }
 
     void image(const JsonValue& image, std::size_t) {
@@ -344,9 +440,12 @@ class Checker {
 
     void animation(const JsonValue& animation, std::size_t) {
         const JsonValue samplers = animation["samplers"].array();
-        for (std::size_t i = 0; i < samplers.size(); ++i)
+        for (std::size_t i = 0; i < samplers.size(); ++i) {
             for (const char* key : {"input", "output"})
                 (void)samplers.at(i).object()[key].index(count("accessors"), "accessor");
+            if (samplers.at(i).has("interpolation"))
+                (void)samplers.at(i)["interpolation"].one_of({"LINEAR", "STEP", "CUBICSPLINE"});
+        }
         const JsonValue channels = animation["channels"].array();
         for (std::size_t i = 0; i < channels.size(); ++i) {
             (void)channels.at(i).object()["sampler"].index(samplers.size(), "sampler");
@@ -374,9 +473,14 @@ class Checker {
                 rotation.refuse("{} is not a unit quaternion", rotation.shown());
         }
         if (node.has("weights")) node["weights"].numbers(node["weights"].array().size());
-        if (node.has("extensions") && node["extensions"].object().has(lights_extension))
-            (void)node["extensions"][lights_extension].object()["light"].index(light_count_,
-                                                                               "light");
+        if (!node.has("extensions")) return;
+        const JsonValue extensions = node["extensions"].object();
+        if (extensions.has(lights_extension))
+            (void)extensions[lights_extension].object()["light"].index(light_count_, "light");
+        if (!extensions.has(instancing)) return;
+        const JsonValue attributes = extensions[instancing].object()["attributes"].object();
+        for (const std::string& name : attributes.keys())
+            (void)attributes[name.c_str()].index(count("accessors"), "accessor");
     }
 
     // Every node has at most one parent, and none is its own ancestor.
@@ -429,17 +533,32 @@ class Checker {
     const GltfFile& file_;
     JsonValue root_;
     std::size_t light_count_ = 0;
+    std::uint64_t decompressed_ = 0;   // bytes, so far
     std::vector<std::size_t> parent_;  // of each node
 };
 
 }  // namespace
 
 const std::set<std::string>& known_extensions() {
-    static const std::set<std::string> known = {
-        "EXT_texture_webp",     "KHR_lights_punctual",    "KHR_materials_emissive_strength",
-        "KHR_materials_ior",    "KHR_materials_specular", "KHR_materials_unlit",
-        "KHR_texture_transform"};
+    static const std::set<std::string> known = {"EXT_meshopt_compression",
+                                                "EXT_mesh_gpu_instancing",
+                                                "EXT_texture_webp",
+                                                "KHR_lights_punctual",
+                                                "KHR_materials_emissive_strength",
+                                                "KHR_materials_ior",
+                                                "KHR_materials_specular",
+                                                "KHR_materials_unlit",
+                                                "KHR_mesh_quantization",
+                                                "KHR_texture_transform"};
     return known;
+}
+
+bool is_fallback_buffer(const nlohmann::json& buffer) {
+    const auto extensions = buffer.find("extensions");
+    if (extensions == buffer.end() || !extensions->is_object()) return false;
+    const auto found = extensions->find("EXT_meshopt_compression");
+    return found != extensions->end() && found->is_object() &&
+           found->value("fallback", nlohmann::json(false)) == true;
 }
 
 void check_gltf(const GltfFile& file) { Checker(file).check(); }

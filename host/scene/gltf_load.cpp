@@ -1,16 +1,13 @@
 // SPDX-License-Identifier: MIT
 #define GLM_ENABLE_EXPERIMENTAL
 #include <algorithm>
-#include <bit>
-#include <cstring>
-#include <glm/gtc/matrix_transform.hpp>
-#include <glm/gtc/quaternion.hpp>
-#include <glm/gtc/type_ptr.hpp>
+#include <glm/glm.hpp>
 #include <glm/gtx/component_wise.hpp>
 
 #include "error.hpp"
 #include "scene/alpha.hpp"
 #include "scene/gltf.hpp"
+#include "scene/gltf_pose.hpp"
 #include "scene/gltf_textures.hpp"
 
 namespace manylight {
@@ -32,21 +29,13 @@ const tinygltf::Value& extension(const tinygltf::ExtensionMap& extensions, const
     return found == extensions.end() ? none : found->second;
 }
 
-glm::dmat4 local_transform(const tinygltf::Node& node) {
-    if (node.matrix.size() == 16) return glm::make_mat4(node.matrix.data());
-    glm::dmat4 m(1.0);
-    if (node.translation.size() == 3)
-        m = glm::translate(m, glm::make_vec3(node.translation.data()));
-    if (node.rotation.size() == 4)
-        m *= glm::mat4_cast(glm::normalize(
-            glm::dquat(node.rotation[3], node.rotation[0], node.rotation[1], node.rotation[2])));
-    if (node.scale.size() == 3) m = glm::scale(m, glm::make_vec3(node.scale.data()));
-    return m;
-}
-
 class Loader {
   public:
-    explicit Loader(const GltfFile& file) : file_(file), model_(parse_gltf(file)) {
+    Loader(const GltfFile& file, std::optional<double> seconds)
+        : file_(file),
+          model_(parse_gltf(file)),
+          accessors_(file, model_),
+          pose_(file, model_, accessors_, seconds) {
         scene_.file = file.path;
     }
 
@@ -156,25 +145,35 @@ class Loader {
         } else if (!model_.nodes.empty()) {
             throw InputError("{}: scenes: the file has nodes but no scene", scene_.file);
         }
-        std::vector<std::pair<int, glm::dmat4>> open;
-        for (auto root = roots.rbegin(); root != roots.rend(); ++root)
-            open.emplace_back(*root, glm::dmat4(1.0));
+        std::vector<int> open(roots.rbegin(), roots.rend());
         while (!open.empty()) {
-            const auto [index, parent] = open.back();
+            const int index = open.back();
             open.pop_back();
             const tinygltf::Node& node = model_.nodes[index];
-            const glm::dmat4 to_world = parent * local_transform(node);
-            for (int c = 0; c < 4; ++c)
-                if (!(glm::compMax(glm::abs(to_world[c])) <= farthest))
-                    throw InputError(
-                        "{}: nodes[{}]: its transform is out of range: {} is more than {}",
-                        scene_.file, index, glm::compMax(glm::abs(to_world[c])), farthest);
-            if (node.mesh >= 0) add_mesh(node.mesh, to_world);
+            const glm::dmat4& to_world = pose_.to_world(index);
+            check_transform(to_world, index);
+            if (node.mesh >= 0) add_instances(index);
             if (node.camera >= 0) add_camera(index, to_world);
             const auto& light = extension(node.extensions, "KHR_lights_punctual");
             if (light.IsObject()) add_light(light.Get("light").GetNumberAsInt(), index, to_world);
-            for (auto child = node.children.rbegin(); child != node.children.rend(); ++child)
-                open.emplace_back(*child, to_world);
+            open.insert(open.end(), node.children.rbegin(), node.children.rend());
+        }
+    }
+
+    void check_transform(const glm::dmat4& to_world, int node) const {
+        for (int c = 0; c < 4; ++c)
+            if (!(glm::compMax(glm::abs(to_world[c])) <= farthest))
+                throw InputError("{}: nodes[{}]: its transform is out of range: {} is more than {}",
+                                 scene_.file, node, glm::compMax(glm::abs(to_world[c])), farthest);
+    }
+
+    // A node's mesh wherever it is: a skinned one where its joints are, whatever the node.
+    void add_instances(int node) {
+        const bool skinned = model_.nodes[node].skin >= 0;
+        for (const glm::dmat4& instance : mesh_instances(file_, node, accessors_)) {
+            const glm::dmat4 to_world = (skinned ? glm::dmat4(1) : pose_.to_world(node)) * instance;
+            check_transform(to_world, node);
+            add_mesh(node, to_world);
         }
     }
 
@@ -233,7 +232,8 @@ class Loader {
         scene_.light_names.push_back(name.empty() ? in.name : name);
     }
 
-    void add_mesh(int index, const glm::dmat4& to_world) {
+    void add_mesh(int node, const glm::dmat4& to_world) {
+        const int index = model_.nodes[node].mesh;
         for (std::size_t p = 0; p < model_.meshes[index].primitives.size(); ++p) {
             const auto& primitive = model_.meshes[index].primitives[p];
             const std::string where = fmt::format("meshes[{}].primitives[{}]", index, p);
@@ -245,50 +245,119 @@ class Loader {
                 ++without_position_;
                 continue;
             }
-            add_primitive(primitive, where, to_world);
+            add_primitive(primitive, where, node, to_world);
         }
     }
 
-    void add_primitive(const tinygltf::Primitive& primitive, const std::string& where,
+    void add_primitive(const tinygltf::Primitive& primitive, const std::string& where, int node,
                        const glm::dmat4& to_world) {
-        const std::vector<glm::vec3> positions =
-            read_vectors(primitive.attributes.at("POSITION"), where + ".attributes.POSITION");
-        std::vector<glm::vec3> normals;
-        if (primitive.attributes.contains("NORMAL")) {
-            normals = read_vectors(primitive.attributes.at("NORMAL"), where + ".attributes.NORMAL");
-            if (normals.size() != positions.size())
-                throw InputError("{}: {}.attributes.NORMAL: {} normals for {} positions",
-                                 scene_.file, where, normals.size(), positions.size());
-            has_normals_ = true;
-        }
+        const int accessor = primitive.attributes.at("POSITION");
+        std::vector<glm::vec4> positions =
+            accessors_.vectors(accessor, Attribute::position, where + ".attributes.POSITION");
+        const std::size_t count = positions.size();
+        add_targets(primitive, "POSITION", node, where, positions);
+        std::vector<glm::vec4> normals =
+            attribute(primitive, "NORMAL", Attribute::normal, count, where);
+        has_normals_ = has_normals_ || !normals.empty();
+        add_targets(primitive, "NORMAL", node, where, normals);
+        std::vector<glm::dmat4> moved;  // [vertex] to the world
+        if (model_.nodes[node].skin >= 0) moved = skin(primitive, node, count, where);
+        const auto transform = [&](std::size_t v) -> glm::dmat4 {
+            return moved.empty() ? to_world : to_world * moved[v];
+        };
         const std::size_t base = scene_.vertices.size();
-        if (base + positions.size() > 0xffffffffu)
+        if (base + count > 0xffffffffu)
             throw InputError("{}: {}: more than 2^32 vertices", scene_.file, where);
-        const glm::dmat3 linear(to_world);
-        const glm::dmat3 to_normal = glm::transpose(glm::inverse(linear));
-        for (std::size_t v = 0; v < positions.size(); ++v) {
-            scene_.vertices.emplace_back(to_world * glm::dvec4(positions[v], 1));
-            glm::dvec3 normal(0);
-            if (!normals.empty()) {
-                normal = to_normal * glm::dvec3(normals[v]);
-                const double length = glm::length(normal);
-                normal = std::isfinite(length) && length > 0 ? normal / length : glm::dvec3(0);
+        glm::dmat4 m = transform(0);
+        const bool mirrored = glm::determinant(glm::dmat3(m)) < 0;  // turns the winding round
+        glm::dmat3 to_normal = glm::transpose(glm::inverse(glm::dmat3(m)));
+        for (std::size_t v = 0; v < count; ++v) {
+            if (!moved.empty()) {
+                m = transform(v);
+                to_normal = glm::transpose(glm::inverse(glm::dmat3(m)));
             }
-            scene_.vertex_normals.emplace_back(normal);
+            scene_.vertices.emplace_back(m * glm::dvec4(glm::vec3(positions[v]), 1));
+            scene_.vertex_normals.emplace_back(
+                normals.empty() ? glm::dvec3(0) : unit(to_normal * glm::dvec3(normals[v])));
             if (!(glm::compMax(glm::abs(scene_.vertices.back())) <= farthest))
                 throw InputError(
                     "{}: {}.attributes.POSITION: vertex {} is out of range in the world: more than "
                     "{}",
                     scene_.file, where, v, farthest);
         }
-        const bool mirrored = glm::determinant(linear) < 0;  // turns the winding round
         const int material = primitive.material >= 0 ? primitive.material
                                                      : static_cast<int>(model_.materials.size());
-        add_coordinates(primitive, material, positions.size(), where);
-        add_tangents(primitive, material, to_world, positions.size(), where);
-        add_colors(primitive, positions.size(), where);
-        add_triangles(corners(primitive, positions.size(), where), primitive.mode, base, mirrored,
-                      material);
+        add_coordinates(primitive, material, count, where);
+        add_tangents(primitive, material, node, transform, count, where);
+        add_colors(primitive, count, where);
+        add_triangles(corners(primitive, count, where), primitive.mode, base, mirrored, material);
+    }
+
+    // 0 where there is no direction.
+    static glm::dvec3 unit(const glm::dvec3& v) {
+        const double length = glm::length(v);
+        return std::isfinite(length) && length > 0 ? v / length : glm::dvec3(0);
+    }
+
+    // An attribute of `count` vertices; none where the primitive does not have it.
+    std::vector<glm::vec4> attribute(const tinygltf::Primitive& primitive, const std::string& name,
+                                     Attribute kind, std::size_t count, const std::string& where) {
+        const auto found = primitive.attributes.find(name);
+        if (found == primitive.attributes.end()) return {};
+        const std::string place = fmt::format("{}.attributes.{}", where, name);
+        std::vector<glm::vec4> values = accessors_.vectors(found->second, kind, place);
+        if (values.size() != count)
+            throw InputError("{}: {}: {} values for {} positions", scene_.file, place,
+                             values.size(), count);
+        return values;
+    }
+
+    // Adds what the primitive's morph targets change of an attribute, by the node's weights.
+    void add_targets(const tinygltf::Primitive& primitive, const std::string& name, int node,
+                     const std::string& where, std::vector<glm::vec4>& values) {
+        const std::span<const float> weights = pose_.morph_weights(node);
+        for (std::size_t t = 0; t < std::min(primitive.targets.size(), weights.size()); ++t) {
+            const auto found = primitive.targets[t].find(name);
+            if (found == primitive.targets[t].end() || weights[t] == 0 || values.empty()) continue;
+            const std::string place = fmt::format("{}.targets[{}].{}", where, t, name);
+            const Attribute kind = name == "POSITION" ? Attribute::position : Attribute::normal;
+            const std::vector<glm::vec4> change = accessors_.vectors(found->second, kind, place);
+            if (change.size() != values.size())
+                throw InputError("{}: {}: {} values for {} vertices", scene_.file, place,
+                                 change.size(), values.size());
+            for (std::size_t v = 0; v < values.size(); ++v)
+                values[v] += glm::vec4(weights[t] * glm::vec3(change[v]), 0);
+        }
+    }
+
+    // [vertex] the mean of its joints' matrices, to the world.
+    std::vector<glm::dmat4> skin(const tinygltf::Primitive& primitive, int node, std::size_t count,
+                                 const std::string& where) {
+        const std::vector<glm::dmat4> joints =
+            pose_.joint_matrices(model_.nodes[node].skin, accessors_);
+        std::vector<glm::dmat4> out(count, glm::dmat4(0));
+        std::vector<double> sums(count, 0);
+        for (int set = 0; primitive.attributes.contains(fmt::format("JOINTS_{}", set)); ++set) {
+            const std::string name = fmt::format("JOINTS_{}", set);
+            const std::vector<glm::vec4> numbers =
+                attribute(primitive, name, Attribute::joints, count, where);
+            const std::vector<glm::vec4> weights = attribute(
+                primitive, fmt::format("WEIGHTS_{}", set), Attribute::weights, count, where);
+            for (std::size_t v = 0; v < weights.size(); ++v)
+                for (int k = 0; k < 4; ++k) {
+                    if (weights[v][k] == 0) continue;
+                    const auto joint = static_cast<std::size_t>(numbers[v][k]);
+                    if (joint >= joints.size())
+                        throw InputError(
+                            "{}: {}.attributes.{}: vertex {} has joint {}, but there are {}",
+                            scene_.file, where, name, v, joint, joints.size());
+                    out[v] += double{weights[v][k]} * joints[joint];
+                    sums[v] += weights[v][k];
+                }
+        }
+        for (std::size_t v = 0; v < count; ++v)
+            out[v] = sums[v] > 0 ? out[v] / sums[v] : pose_.to_world(node);
+        return out;
     }
 
     // Those that the scene's textures need; 0 where this primitive's do not.
@@ -305,8 +374,8 @@ class Loader {
                 out.resize(out.size() + count, glm::vec2(0));
                 continue;
             }
-            for (const glm::vec4& v : read_normalized(primitive.attributes.at(name), 2, 2, count,
-                                                      where + ".attributes." + name))
+            for (const glm::vec4& v :
+                 attribute(primitive, name, Attribute::coordinates, count, where))
                 out.emplace_back(v);
         }
     }
@@ -319,38 +388,35 @@ class Loader {
     }
 
     // Where a normal map and vertex normals need them.
-    void add_tangents(const tinygltf::Primitive& primitive, int material,
-                      const glm::dmat4& to_world, std::size_t count, const std::string& where) {
-        const auto found = primitive.attributes.find("TANGENT");
-        const bool used = found != primitive.attributes.end() && !scene_.maps.empty() &&
+    template <class Transform>
+    void add_tangents(const tinygltf::Primitive& primitive, int material, int node,
+                      const Transform& transform, std::size_t count, const std::string& where) {
+        const bool used = primitive.attributes.contains("TANGENT") && !scene_.maps.empty() &&
                           scene_.maps[MAP_KIND_COUNT * material + MAP_NORMAL].texture != NO_TEXTURE;
         if (!used) {
             if (!scene_.tangents.empty()) scene_.tangents.resize(scene_.vertices.size(), float4(0));
             return;
         }
         scene_.tangents.resize(scene_.vertices.size() - count, float4(0));
-        const double mirrored = glm::determinant(glm::dmat3(to_world)) < 0 ? -1 : 1;
-        for (const glm::vec4& v :
-             read_normalized(found->second, 4, 4, count, where + ".attributes.TANGENT")) {
-            const glm::dvec3 along = glm::dmat3(to_world) * glm::dvec3(v);
-            const double length = glm::length(along);
-            const bool valid = std::isfinite(length) && length > 0;
-            scene_.tangents.push_back(
-                valid ? float4(glm::vec3(along / length), v.w < 0 ? -mirrored : mirrored)
-                      : float4(0));
+        std::vector<glm::vec4> tangents =
+            attribute(primitive, "TANGENT", Attribute::tangent, count, where);
+        add_targets(primitive, "TANGENT", node, where, tangents);
+        for (std::size_t v = 0; v < count; ++v) {
+            const glm::dmat3 linear(transform(v));
+            const glm::vec3 along(unit(linear * glm::dvec3(tangents[v])));
+            const float side = (tangents[v].w < 0) == (glm::determinant(linear) < 0) ? 1.f : -1.f;
+            scene_.tangents.push_back(along == glm::vec3(0) ? float4(0) : float4(along, side));
         }
     }
 
     void add_colors(const tinygltf::Primitive& primitive, std::size_t count,
                     const std::string& where) {
-        const auto found = primitive.attributes.find("COLOR_0");
-        if (found == primitive.attributes.end()) {
+        if (!primitive.attributes.contains("COLOR_0")) {
             if (!scene_.colors.empty()) scene_.colors.resize(scene_.vertices.size(), float4(1));
             return;
         }
         scene_.colors.resize(scene_.vertices.size() - count, float4(1));
-        for (const glm::vec4& v :
-             read_normalized(found->second, 3, 4, count, where + ".attributes.COLOR_0"))
+        for (const glm::vec4& v : attribute(primitive, "COLOR_0", Attribute::color, count, where))
             scene_.colors.push_back(glm::clamp(v, 0.f, 1.f));
     }
 
@@ -382,7 +448,7 @@ class Loader {
             corners.resize(vertices);
             for (std::size_t i = 0; i < vertices; ++i) corners[i] = static_cast<std::uint32_t>(i);
         } else {
-            corners = read_indices(primitive.indices, where + ".indices");
+            corners = accessors_.indices(primitive.indices, where + ".indices");
         }
         for (std::size_t i = 0; i < corners.size(); ++i)
             if (corners[i] >= vertices)
@@ -393,96 +459,6 @@ class Loader {
             throw InputError("{}: {}: {} corners are no whole number of triangles", scene_.file,
                              where, corners.size());
         return corners;
-    }
-
-    struct Elements {
-        const unsigned char* data;
-        std::size_t stride;
-        std::size_t count;
-    };
-
-    // Where an accessor's elements lie; its range was checked by check_gltf().
-    Elements elements(const tinygltf::Accessor& accessor, const std::string& where) {
-        if (accessor.sparse.isSparse)
-            throw InputError("{}: {}: sparse accessors are not supported", scene_.file, where);
-        if (accessor.bufferView < 0)
-            throw InputError("{}: {}: the accessor has no bufferView", scene_.file, where);
-        const tinygltf::BufferView& view = model_.bufferViews[accessor.bufferView];
-        const std::size_t offset = view.byteOffset + accessor.byteOffset;
-        const auto stride = static_cast<std::size_t>(accessor.ByteStride(view));
-        return {model_.buffers[view.buffer].data.data() + offset, stride, accessor.count};
-    }
-
-    std::vector<glm::vec3> read_vectors(int index, const std::string& where) {
-        const tinygltf::Accessor& accessor = model_.accessors[index];
-        if (accessor.type != TINYGLTF_TYPE_VEC3 ||
-            accessor.componentType != TINYGLTF_COMPONENT_TYPE_FLOAT)
-            throw InputError("{}: {}: accessor {} is not VEC3 of float (5126)", scene_.file, where,
-                             index);
-        const Elements in = elements(accessor, where);
-        std::vector<glm::vec3> out(in.count);
-        for (std::size_t i = 0; i < in.count; ++i) {
-            std::memcpy(&out[i], in.data + i * in.stride, sizeof(glm::vec3));
-            if (!std::isfinite(glm::compAdd(out[i] * 0.25f)))
-                throw InputError("{}: {}: element {} ({}, {}, {}) is not finite", scene_.file,
-                                 where, i, out[i].x, out[i].y, out[i].z);
-        }
-        return out;
-    }
-
-    // Vectors of floats, or of unsigned integers that mean 0 to 1; missing components are 1.
-    std::vector<glm::vec4> read_normalized(int index, int fewest, int most, std::size_t count,
-                                           const std::string& where) {
-        const tinygltf::Accessor& accessor = model_.accessors[index];
-        const int type = accessor.componentType;
-        const int components = tinygltf::GetNumComponentsInType(accessor.type);
-        const bool is_float = type == TINYGLTF_COMPONENT_TYPE_FLOAT;
-        const bool is_fraction =
-            accessor.normalized && (type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE ||
-                                    type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT);
-        if (components < fewest || components > most || accessor.type > TINYGLTF_TYPE_VEC4 ||
-            !(is_float || is_fraction))
-            throw InputError(
-                "{}: {}: accessor {} is not VEC{} of float (5126) or normalized unsigned byte or "
-                "short",
-                scene_.file, where, index,
-                most == 2     ? "2"
-                : fewest == 4 ? "4"
-                              : "3 or VEC4");
-        if (accessor.count != count)
-            throw InputError("{}: {}: {} values for {} positions", scene_.file, where,
-                             accessor.count, count);
-        const Elements in = elements(accessor, where);
-        const int bytes = tinygltf::GetComponentSizeInBytes(type);
-        std::vector<glm::vec4> out(in.count, glm::vec4(1));
-        for (std::size_t i = 0; i < in.count; ++i)
-            for (int c = 0; c < components; ++c) {
-                const unsigned char* value = in.data + i * in.stride + c * bytes;
-                std::uint32_t word = 0;
-                std::memcpy(&word, value, bytes);
-                out[i][c] = is_float ? std::bit_cast<float>(word)
-                                     : static_cast<float>(word) / (bytes == 1 ? 255.f : 65535.f);
-                if (!std::isfinite(out[i][c]))
-                    throw InputError("{}: {}: element {} is not finite", scene_.file, where, i);
-            }
-        return out;
-    }
-
-    std::vector<std::uint32_t> read_indices(int index, const std::string& where) {
-        const tinygltf::Accessor& accessor = model_.accessors[index];
-        const int type = accessor.componentType;
-        if (accessor.type != TINYGLTF_TYPE_SCALAR ||
-            (type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE &&
-             type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT &&
-             type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT))
-            throw InputError("{}: {}: accessor {} is not SCALAR of an unsigned integer type",
-                             scene_.file, where, index);
-        const Elements in = elements(accessor, where);
-        const int bytes = tinygltf::GetComponentSizeInBytes(type);
-        std::vector<std::uint32_t> out(in.count, 0);  // little-endian: low bytes first
-        for (std::size_t i = 0; i < in.count; ++i)
-            std::memcpy(&out[i], in.data + i * in.stride, bytes);
-        return out;
     }
 
     void warn(std::size_t count, const char* what) {
@@ -498,15 +474,11 @@ class Loader {
                 specular.Has("specularTexture") || specular.Has("specularColorTexture");
             textured += specular_texture;
         }
-        std::size_t morphed = 0;
-        for (const tinygltf::Mesh& mesh : model_.meshes)
-            for (const tinygltf::Primitive& primitive : mesh.primitives)
-                morphed += !primitive.targets.empty();
         warn(textured,
              "materials have specular textures, which are not rendered; their factors are");
-        warn(model_.skins.size(), "skins are not applied; their meshes keep their rest pose");
-        warn(morphed, "primitives have morph targets, which are not applied");
-        warn(model_.animations.size(), "animations are not applied");
+        if (pose_.is_at_rest())
+            warn(model_.animations.size(),
+                 "animations are at rest; --at SECONDS shows a moment of the first");
         warn(lines_and_points_, "primitives are points or lines, which are not rendered");
         warn(without_position_, "primitives have no POSITION and are not rendered");
         for (const std::string& name : model_.extensionsUsed)
@@ -517,6 +489,8 @@ class Loader {
 
     const GltfFile& file_;
     tinygltf::Model model_;
+    Accessors accessors_;
+    Pose pose_;
     Scene scene_;
     std::vector<unsigned> coordinate_sets_;  // [set of Scene::coordinates] n of TEXCOORD_n
     bool has_normals_ = false;
@@ -526,10 +500,10 @@ class Loader {
 
 }  // namespace
 
-Scene load_scene(const std::string& path) {
+Scene load_scene(const std::string& path, std::optional<double> seconds) {
     const GltfFile file = read_gltf(path);
     check_gltf(file);
-    return Loader(file).load();
+    return Loader(file, seconds).load();
 }
 
 }  // namespace manylight

@@ -25,10 +25,20 @@ bool has_images_in_text(const nlohmann::json& json) {
            });
 }
 
-// The file without its images.
-std::vector<unsigned char> without_images(const GltfFile& file) {
+// Buffers that only say how large others are when decompressed (EXT_meshopt_compression).
+bool has_fallback_buffers(const GltfFile& file) {
+    return file.json.contains("buffers") &&
+           std::ranges::any_of(file.json["buffers"], is_fallback_buffer);
+}
+
+// The file without what the library refuses.
+std::vector<unsigned char> without_refused(const GltfFile& file) {
     nlohmann::json json = file.json;
     json.erase("images");
+    if (json.contains("buffers"))
+        for (nlohmann::json& buffer : json["buffers"])
+            if (is_fallback_buffer(buffer))
+                buffer = {{"byteLength", 1}, {"uri", "data:application/octet-stream;base64,AA=="}};
     std::string text = json.dump();
     if (!file.is_binary) return {text.begin(), text.end()};
     text.resize((text.size() + 3) / 4 * 4, ' ');
@@ -55,7 +65,8 @@ tinygltf::Model parse_gltf(const GltfFile& file) {
     std::string error;
     std::string warning;
     std::vector<unsigned char> changed;
-    if (has_images_in_text(file.json)) changed = without_images(file);
+    if (has_images_in_text(file.json) || has_fallback_buffers(file))
+        changed = without_refused(file);
     const std::vector<unsigned char>& bytes = changed.empty() ? file.bytes : changed;
     const auto length = static_cast<unsigned>(bytes.size());
     const std::string folder = std::filesystem::absolute(file.path).parent_path().string();
