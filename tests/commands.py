@@ -518,6 +518,44 @@ class CommandTest(unittest.TestCase):
         self.assertIn("warning: --baseline uniform", run.stderr)
         self.assertEqual(chart["baseline"], "exhaustive")
 
+    def test_checkpoints(self):
+        arguments = ["render", self.cornell, "--height", "32", "-q", "-o", "image.exr"]
+        saved = [*arguments, "--checkpoint", "state", "--spp", "4"]
+        self.refuse(*arguments, "--checkpoint", "state", "--time", 1, words=["state", "--time"])
+        self.refuse(*arguments, "--checkpoint", "image.exr", words=["image.exr", "--output"])
+        self.run_program(*saved)
+        self.assertEqual(self.files(), ["image.exr", "state"])
+        before = (self.folder / "state").read_bytes()
+        self.refuse(*saved, words=["state", "is there already", "--resume"])
+        self.refuse(*saved, "--resume", "--seed", 2, words=["state", "another render"])
+        (self.folder / "state").write_bytes(before[:-100] + before[-99:])
+        self.refuse(*saved, "--resume", words=["state", "damaged"])
+        (self.folder / "state").write_bytes(before[:-20] + bytes([before[-20] ^ 1]) + before[-19:])
+        self.refuse(*saved, "--resume", words=["state", "damaged"])
+        (self.folder / "state").write_bytes(b"something else")
+        self.refuse(*saved, "--resume", words=["state", "no checkpoint"])
+        # More pixel samples on top of those that are there.
+        (self.folder / "state").write_bytes(before)
+        more = [*arguments, "--spp", "12"]
+        self.run_program(*more, "--checkpoint", "state", "--resume", "-o", "more.exr")
+        self.run_program(*more, "-o", "whole.exr")
+        run = self.run_program("compare", "more.exr", "whole.exr", "--json")
+        self.assertEqual(json.loads(run.stdout)["rmse"], 0)
+        self.assertNotEqual((self.folder / "state").read_bytes(), before)
+
+    def test_interrupts_leave_no_litter(self):
+        run = subprocess.Popen([PROGRAM, "render", self.cornell, "--height", "64", "-q", "--spp",
+                                "100000", "-o", "image.exr", "--checkpoint", "state",
+                                "--checkpoint-every", "0"], cwd=self.folder)
+        end = time.monotonic() + 120
+        while not (self.folder / "state").exists():
+            self.assertLess(time.monotonic(), end)
+            time.sleep(0.01)
+        time.sleep(0.3)  # it spends much of its time writing
+        run.send_signal(signal.SIGTERM)
+        self.assertEqual(run.wait(60), -signal.SIGTERM)
+        self.assertEqual(self.files(), ["state"])
+
     def test_an_interrupted_chart_goes_on(self):
         arguments = ["chart", self.cornell, "--emitter-points", "0", "--height", "48", "--samplers",
                      "adaptive", "--light-samples", "16", "--seeds", "2", "--spp", "4", "--cache",

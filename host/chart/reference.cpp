@@ -28,12 +28,6 @@ constexpr const char* fact = "manylight:reference";
 const std::vector<std::string> layers = {"R",           "G",           "B",
                                          "deviation.R", "deviation.G", "deviation.B"};
 
-template <class T>
-std::span<const std::byte> bytes_of(const std::vector<T>& values) {
-    static_assert(std::is_trivially_copyable_v<T>);
-    return std::as_bytes(std::span(values));
-}
-
 }  // namespace
 
 Reference::Reference(unsigned width, unsigned height, bool exact)
@@ -133,14 +127,7 @@ Setting reference_setting(const Renderer& renderer) {
 
 std::string reference_name(const Renderer& renderer, const Setting& setting) {
     ContentHash hash;
-    const Scene& scene = renderer.scene();
-    hash.add(bytes_of(scene.vertices)).add(bytes_of(scene.vertex_normals));
-    hash.add(bytes_of(scene.indices)).add(bytes_of(scene.triangle_materials));
-    hash.add(bytes_of(scene.materials)).add(bytes_of(scene.lights)).add(bytes_of(scene.cell_areas));
-    hash.add(bytes_of(scene.maps)).add(bytes_of(scene.textures)).add(bytes_of(scene.texels));
-    for (const auto& set : scene.coordinates) hash.add(bytes_of(set));
-    hash.add(bytes_of(scene.colors)).add(bytes_of(scene.tangents));
-    hash.add(bytes_of(scene.alpha_of)).add(bytes_of(scene.alpha_triangles));
+    hash.add(renderer.scene());
     hash.add(std::as_bytes(std::span(&renderer.camera(), 1)));
     hash.add(renderer.width()).add(renderer.height());
     hash.add(setting.sampler).add(setting.light_samples).add(setting.spp);

@@ -34,9 +34,12 @@ struct RenderArguments {
     std::optional<uint> spp;
     double seconds = 0;  // to render in, from the program's start; 0: as long as it takes
     std::vector<std::string> outputs;
-    std::optional<float> exposure;  // stops over the scene's units; otherwise automatic
-    std::string cluster_map;        // .png
-    unsigned top_lights = 0;        // to report; 0: none
+    std::optional<float> exposure;   // stops over the scene's units; otherwise automatic
+    std::string cluster_map;         // .png
+    std::string checkpoint;          // file to save the render's state to
+    double checkpoint_seconds = 60;  // between two times
+    bool resume = false;             // from the checkpoint, if there is one
+    unsigned top_lights = 0;         // to report; 0: none
     std::string stats;
     bool quiet = false;
 };

@@ -207,6 +207,18 @@ void add_render(CLI::App& app, std::function<int()>& run) {
                      "list the K lights that give the image most, with their shares")
         ->check(whole(1, 1000));
     command->add_option("--stats", arguments->stats, "seconds, rays and memory, as JSON");
+    command->add_option("--checkpoint", arguments->checkpoint,
+                        "file to save the render's state to every minute, and at its end");
+    command
+        ->add_option("--checkpoint-every", arguments->checkpoint_seconds,
+                     "seconds between two times")
+        ->check(number(0, 1e9))
+        ->capture_default_str();
+    command
+        ->add_flag("--resume", arguments->resume,
+                   "go on from the --checkpoint, if there is one: the image is that of a render "
+                   "without a break, bit for bit; with more --spp, it gets these")
+        ->needs("--checkpoint");
     command->add_option_function<std::string>(
         "--memory", [&o](const std::string& text) { o.memory = parse_bytes(text); },
         "most memory on the device, such as 512M (default: half of it, at most 2G)");
@@ -220,7 +232,8 @@ void add_render(CLI::App& app, std::function<int()>& run) {
                     "  manylight render scene.glb --target-error 0.001 --aov error -o a.exr\n"
                     "  manylight render scene.glb --sampler exhaustive -o reference.exr\n"
                     "  manylight render scene.glb --cluster-map clusters.png --stats stats.json\n"
-                    "  manylight render scene.glb --top-lights 10\n");
+                    "  manylight render scene.glb --top-lights 10\n"
+                    "  manylight render scene.glb --spp 4096 --checkpoint state --resume\n");
     command->callback([&run, arguments] {
         if (arguments->sampler != "auto") (void)find_sampler(arguments->sampler);
         RenderOptions& o = arguments->options;

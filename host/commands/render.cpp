@@ -31,6 +31,7 @@ std::vector<std::pair<std::string, std::string>> files_of(const RenderArguments&
     for (const std::string& image : images) files.emplace_back("--output", image);
     if (!arguments.cluster_map.empty()) files.emplace_back("--cluster-map", arguments.cluster_map);
     if (!arguments.stats.empty()) files.emplace_back("--stats", arguments.stats);
+    if (!arguments.checkpoint.empty()) files.emplace_back("--checkpoint", arguments.checkpoint);
     return files;
 }
 
@@ -51,6 +52,33 @@ void check_files(const RenderArguments& arguments, const std::vector<std::string
             if (same_file(path, files[j].second))
                 throw InputError("{} {}: is written by {} too", option, path, files[j].first);
     }
+}
+
+// A checkpoint is hours of work: none is lost by forgetting an option.
+void check_checkpoint(const RenderArguments& arguments) {
+    if (arguments.checkpoint.empty()) return;
+    if (arguments.seconds > 0)
+        throw InputError("--checkpoint {}: not with --time, which ends where the machine is",
+                         arguments.checkpoint);
+    std::error_code error;
+    if (!arguments.resume && fs::exists(arguments.checkpoint, error))
+        throw InputError(
+            "--checkpoint {}: is there already; add --resume to go on from it, or "
+            "remove it",
+            arguments.checkpoint);
+}
+
+// Renders on from the checkpoint, if asked for and there is one, and saves to it.
+FrameResult render_frame(Frame& frame, const RenderArguments& arguments) {
+    const std::string& file = arguments.checkpoint;
+    Progress progress("rendering", arguments.quiet);
+    if (file.empty()) return frame.render(progress);
+    std::optional<FrameState> state;
+    if (arguments.resume && fs::exists(file)) state = read_checkpoint(file, frame.name());
+    const std::string name = frame.name();
+    const Saving saving{arguments.checkpoint_seconds,
+                        [&](const FrameState& now) { write_checkpoint(file, name, now); }};
+    return frame.render(progress, saving, state ? &*state : nullptr);
 }
 
 void print_plan(const LoadedScene& loaded, const Plan& plan, const DeviceInfo& device) {
@@ -206,6 +234,7 @@ int run_render(const RenderArguments& arguments) {
     std::vector<std::string> images = arguments.outputs;
     if (images.empty()) images = {fs::path(arguments.scene.file).stem().string() + ".png"};
     check_files(arguments, images);
+    check_checkpoint(arguments);
     RenderOptions options = arguments.options;
     if (!options.aovs.empty() &&
         std::ranges::none_of(images, [](const std::string& i) { return i.ends_with(".exr"); }))
@@ -239,10 +268,7 @@ int run_render(const RenderArguments& arguments) {
     Frame frame(device, loaded.scene, bvh, loaded.camera, options);
     if (!arguments.quiet) print_plan(loaded, frame.plan(), device.info());
     frame.prepare();
-    FrameResult result = [&] {
-        Progress progress("rendering", arguments.quiet);
-        return frame.render(progress);
-    }();
+    FrameResult result = render_frame(frame, arguments);
     warn_if_not_finite(result.image);
 
     const json parameters = make_parameters(options, loaded, result);

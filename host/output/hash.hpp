@@ -7,6 +7,8 @@
 #include <type_traits>
 #include <vector>
 
+#include "scene/scene.hpp"
+
 namespace manylight {
 
 /// A name for contents, for caches: 64 bits, which do not withstand an attacker.
@@ -19,6 +21,9 @@ class ContentHash {
     add(const T& value) {
         return add(std::as_bytes(std::span(&value, 1)));
     }
+
+    /// All that rendering reads of a scene.
+    ContentHash& add(const Scene& scene);
 
     /// 16 hexadecimal digits.
     [[nodiscard]] std::string name() const;

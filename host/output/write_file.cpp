@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <csignal>
 #include <cstring>
 #include <filesystem>
 
@@ -15,6 +16,26 @@ namespace manylight {
 namespace {
 
 namespace fs = std::filesystem;
+
+// The file that is being written aside, for signals: a process that ends by one leaves none.
+char part_name[4096];
+volatile std::sig_atomic_t has_part = 0;
+
+void remove_part(int signal_number) {
+    if (has_part != 0) unlink(part_name);
+    std::signal(signal_number, SIG_DFL);
+    std::raise(signal_number);
+}
+
+void handle_signals() {
+    static const bool once = [] {
+        for (const int number : {SIGINT, SIGTERM, SIGHUP})
+            if (std::signal(number, remove_part) == SIG_IGN) std::signal(number, SIG_IGN);
+        std::signal(SIGXFSZ, SIG_IGN);  // a file too large is an error as any other
+        return true;
+    }();
+    (void)once;
+}
 
 // errno of what failed, or 0.
 int write_all(int file, std::span<const std::byte> bytes) {
@@ -62,11 +83,19 @@ void write_file(const std::string& path, std::span<const std::byte> bytes) {
         fs::is_symlink(path, error) ? fs::weakly_canonical(path, error) : fs::path(path);
     const fs::path aside =
         target.parent_path() / fmt::format(".{}.{}.part", target.filename().string(), getpid());
+    handle_signals();
+    has_part = 0;
+    std::strncpy(part_name, aside.c_str(), sizeof(part_name) - 1);
+    has_part = aside.native().size() < sizeof(part_name) ? 1 : 0;
     const int file = open(aside.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-    if (file < 0) throw RuntimeError("{}: cannot be written: {}", path, std::strerror(errno));
+    if (file < 0) {
+        has_part = 0;
+        throw RuntimeError("{}: cannot be written: {}", path, std::strerror(errno));
+    }
     int problem = write_all(file, bytes);
     if (close(file) != 0 && problem == 0) problem = errno;
     if (problem == 0 && std::rename(aside.c_str(), target.c_str()) != 0) problem = errno;
+    has_part = 0;
     if (problem == 0) return;
     unlink(aside.c_str());
     throw RuntimeError("{}: cannot be written: {}", path, std::strerror(problem));

@@ -63,6 +63,29 @@ void Adaptive::draw(const Tiles& tiles, const PixelSample& sample, uint light_sa
     fresh_ = false;
 }
 
+void Adaptive::save(FrameState& state) {
+    sum_up();
+    state.put("cut_nodes", cuts_.nodes);
+    state.put("cut_sizes", cuts_.sizes);
+    state.put("cut_probes", cuts_.probes);
+    state.put("visibility_counts", visibility_.counts);
+    state.put("budget_factor", factor_);
+    state.put("budget_exposure", exposure_);
+}
+
+void Adaptive::resume(const Tiles& tiles, const FrameState& state) {
+    state.restore("cut_nodes", cuts_.nodes);
+    state.restore("cut_sizes", cuts_.sizes);
+    state.restore("cut_probes", cuts_.probes);
+    state.restore("visibility_counts", visibility_.counts);
+    factor_ = state.get<float>("budget_factor");
+    exposure_ = state.get<float>("budget_exposure");
+    tiles_ = tiles;
+    fresh_ = false;
+    is_summed_ = false;
+    drawn_pixels_ = 0;
+}
+
 TileKnowledge Adaptive::knowledge(uint tile) {
     sum_up();
     visibility_stage_.estimate(tile, 1, cuts_, visibility_);

@@ -3,6 +3,7 @@
 
 #include <functional>
 
+#include "pipeline/checkpoint.hpp"
 #include "stages/adaptive.hpp"
 
 namespace manylight {
@@ -31,6 +32,11 @@ class Adaptive {
     void draw(const Tiles& tiles, const PixelSample& sample, uint light_samples,
               const Buffer<Surface>& surfaces, Estimates& estimates,
               const std::function<bool(const Pass&)>& done);
+
+    /// Puts what it takes to go on with the batch between two pixel samples.
+    void save(FrameState& state);
+    /// Goes on where save() was called, in place of start().
+    void resume(const Tiles& tiles, const FrameState& state);
 
     /// What is known of a tile of the batch, after draw().
     [[nodiscard]] TileKnowledge knowledge(uint tile);

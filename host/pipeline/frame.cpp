@@ -5,6 +5,8 @@
 #include <optional>
 
 #include "clock.hpp"
+#include "device/kernel_sources.hpp"
+#include "output/hash.hpp"
 #include "pipeline/adaptive.hpp"
 #include "pipeline/aov.hpp"
 #include "stages/accumulate.hpp"
@@ -135,12 +137,16 @@ void Frame::prepare() {
     }
 }
 
-FrameResult Frame::render(Progress& progress) {
+FrameResult Frame::render(Progress& progress, const Saving& saving, const FrameState* state) {
+    saving_ = saving;
+    saved_ = Clock::now();
     for (const Aov& aov : all_aovs())
         if (std::ranges::count(options_.aovs, aov.name))
             result_.aovs.emplace_back(aov.name,
                                       Image(options_.width, options_.height, aov.channels));
     done_.assign(plan_.batches, 0);
+    layers_kept_.assign(plan_.batches, false);
+    if (state != nullptr) resume(*state);
     if (options_.target_error > 0)
         render_to_error(progress);
     else
@@ -158,7 +164,7 @@ FrameResult Frame::render(Progress& progress) {
 
 // Renders as many samples as the error so far says are needed, and looks again.
 void Frame::render_to_error(Progress& progress) {
-    uint end = std::min(fewest_samples, options_.spp);
+    uint end = std::min(std::max(fewest_samples, resumed_end_), options_.spp);
     double shown = 0;
     double share = 0.2;  // of all work, which is not known yet
     double weight = 0;   // of all samples until `end`
@@ -202,17 +208,20 @@ void Frame::visit_all(uint end, double shown, double share, Progress& progress) 
         visit.shown = shown;
         shown += visit.share;
         // What is kept of a batch is lost where another one was in between.
-        visit.fresh = done_[i] == 0 || plan_.batches > 1;
+        if (state_ != nullptr && state_->get<uint>("batch") == i) visit.state = state_;
+        visit.fresh = done_[i] == 0 || plan_.batches > 1 || visit.state != nullptr;
         if (plan_.centres && visit.fresh) {
             Stopwatch watch(result_.prepare_seconds, device_);
             stages_->gbuffer.trace(visit.batch, {}, stages_->centres, stages_->centres_first);
             if (options_.jitters()) result_.primary_rays += pixel_count(visit.batch);
             if (plan_.clusters) cluster(visit, progress);
-            if (done_[i] == 0) keep_aovs(visit.batch);
+            if (!layers_kept_[i]) keep_aovs(visit.batch);
+            layers_kept_[i] = true;
             device_.finish();
         }
         Stopwatch watch(result_.render_seconds, device_);
         sample(visit, progress);
+        if (visit.state != nullptr && plan_.batches > 1) state_ = nullptr;  // this batch was done
     }
 }
 
@@ -246,7 +255,7 @@ void Frame::cluster(const Visit& visit, Progress& progress) {
     });
     clustering.normalise(mixture_of(sampler_, scene_.lights));
     for (const RowSum& total : clustering.totals()) cluster_rays_ += total.facing_count;
-    if (done_[visit.number] > 0) return;
+    if (layers_kept_[visit.number]) return;
     clusters_before_ = result_.clusters;
     for (const uint split : clustering.split()) result_.clusters += split == 0;
 }
@@ -305,22 +314,78 @@ void Frame::sample(const Visit& visit, Progress& progress) {
         result_.later_light_samples = count;
         done_[visit.number] = i + 1;
         if (s.adaptive && count > 0) {
-            if (i == first && visit.fresh) s.adaptive->start(batch, s.surfaces, options_.seed);
+            if (i == first && visit.state != nullptr)
+                s.adaptive->resume(batch, *visit.state);
+            else if (i == first && visit.fresh)
+                s.adaptive->start(batch, s.surfaces, options_.seed);
             bool complete = true;
             s.adaptive->draw(batch, sample, count, s.surfaces, s.estimates, [&](const Pass& pass) {
                 if (!s.reflections) add(pass);
                 progress_by(pass_pixels(pass) * count);
                 return complete = !may_stop || seconds_left() > 0;
             });
-            if (!s.reflections || !complete) continue;
+            if (!complete) continue;
         } else if (s.samples) {
             s.samples->draw(batch, sample, count, s.surfaces, s.tables, s.estimates, progress_by);
         }
         if (s.reflections)
             s.reflections->add(batch, position_of(sample), s.surfaces, s.estimates.sums);
-        add({});
+        if (s.reflections || !s.adaptive || count == 0) add({});
         device_.finish();
         seconds_per_sample = seconds_since(begun) / std::max(count, 1u);
+        const bool is_last = i + 1 == options_.spp && visit.number + 1 == plan_.batches;
+        state_ = nullptr;
+        if (saving_.save && (is_last || seconds_since(saved_) > saving_.seconds))
+            save(visit.number, visit.end);
+    }
+}
+
+std::string Frame::name() const {
+    ContentHash hash;
+    const RenderOptions& o = options_;
+    hash.add(scene_).add(std::as_bytes(std::span(&camera_, 1)));
+    hash.add(o.width).add(o.height).add(o.seed).add(o.light_samples).add(o.target_error);
+    hash.add(o.jitters()).add(o.hide_emitters).add(o.reflections).add(o.estimates_error());
+    hash.add(o.clusters.tile_size).add(o.clusters.max_depth).add(o.clusters.normal_threshold);
+    hash.add(o.clusters.shadow.threshold).add(plan_.tiles_per_batch);
+    hash.add(device_.info().name).add(device_.info().platform);
+    if (plan_.batches > 1) hash.add(o.spp);  // of batches that are done, nothing is kept to go on
+    for (const auto& [file, text] : kernel_sources) hash.add(text);
+    return std::string(o.sampler) + " " + hash.add(MANYLIGHT_VERSION).name();
+}
+
+// Between two pixel samples of a batch that is on the way to `end` of them.
+void Frame::save(unsigned batch, uint end) {
+    FrameState state;
+    Stages& s = *stages_;
+    state.put("batch", uint{batch});
+    state.put("end", end);
+    state.put("done", std::span<const uint>(done_));
+    state.put("cluster_rays", std::uint64_t{cluster_rays_});
+    state.put("sums", s.image.sums);
+    state.put("residuals", s.image.residuals);
+    state.put("weights", s.image.weights);
+    if (options_.estimates_error()) {
+        state.put("pending", s.image.pending);
+        state.put("differences", s.image.differences);
+    }
+    if (s.adaptive && !scene_.lights.empty()) s.adaptive->save(state);
+    saving_.save(state);
+    saved_ = Clock::now();
+}
+
+void Frame::resume(const FrameState& state) {
+    Stages& s = *stages_;
+    state_ = &state;
+    resumed_end_ = state.get<uint>("end");
+    done_ = state.get<uint>("done", plan_.batches);
+    cluster_rays_ = state.get<std::uint64_t>("cluster_rays");
+    state.restore("sums", s.image.sums);
+    state.restore("residuals", s.image.residuals);
+    state.restore("weights", s.image.weights);
+    if (options_.estimates_error()) {
+        state.restore("pending", s.image.pending);
+        state.restore("differences", s.image.differences);
     }
 }
 

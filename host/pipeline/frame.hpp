@@ -43,8 +43,13 @@ class Frame {
     /// Uploads the scene and builds the kernels.
     void prepare();
 
-    /// To be called once, after prepare().
-    [[nodiscard]] FrameResult render(Progress& progress);
+    /// To be called once, after prepare(). Goes on with `state` where one is given, saved by a
+    /// frame of the same arguments but for spp.
+    [[nodiscard]] FrameResult render(Progress& progress, const Saving& saving = {},
+                                     const FrameState* state = nullptr);
+
+    /// Names what is rendered, with everything that a pixel sample depends on.
+    [[nodiscard]] std::string name() const;
 
     /// The lights' tree, where the sampler uses one; after prepare().
     [[nodiscard]] const LightTree& tree() const { return tree_; }
@@ -58,9 +63,10 @@ class Frame {
     // Samples of a batch's pixels.
     struct Visit {
         Tiles batch;
-        unsigned number;    // of the batch
-        uint end;           // pixel samples until
-        bool fresh = true;  // nothing is kept of it
+        unsigned number;                    // of the batch
+        uint end;                           // pixel samples until
+        bool fresh = true;                  // nothing is kept of it
+        const FrameState* state = nullptr;  // to go on with
         Clock::time_point begun;
         std::optional<Clock::time_point> deadline;
         double shown = 0;  // of the progress bar, before
@@ -76,6 +82,8 @@ class Frame {
     void cluster(const Visit& visit, Progress& progress);
     void keep_aovs(const Tiles& batch);
     void sample(const Visit& visit, Progress& progress);
+    void save(unsigned batch, uint end);
+    void resume(const FrameState& state);
     [[nodiscard]] ErrorEstimate estimate_error();
     void keep_image();
     [[nodiscard]] double cluster_work(const Tiles& batch) const;
@@ -88,9 +96,14 @@ class Frame {
     RenderOptions options_;
     const Sampler& sampler_;
     Plan plan_;
-    LightTree tree_;                   // where the sampler uses it
-    std::vector<uint> done_;           // [batch] pixel samples begun
-    std::size_t clusters_before_ = 0;  // the batch in work
+    LightTree tree_;                 // where the sampler uses it
+    std::vector<uint> done_;         // [batch] pixel samples begun
+    std::vector<bool> layers_kept_;  // [batch]
+    Saving saving_;
+    Clock::time_point saved_;
+    const FrameState* state_ = nullptr;  // until the render has gone on with it
+    uint resumed_end_ = 0;               // pixel samples that it was on the way to
+    std::size_t clusters_before_ = 0;    // the batch in work
     std::size_t cluster_rays_ = 0;
     std::shared_ptr<Stages> stages_;
     FrameResult result_;
