@@ -30,18 +30,33 @@ def pixels(image):
     return [line.strip() for line in run.stdout.splitlines() if "SHA-1" in line]
 
 
-def render(program, arguments, folder, kill_after=None):
-    """Whether it came to its end."""
-    run = subprocess.Popen([program, *arguments], cwd=folder, stderr=subprocess.PIPE, text=True)
+def start(program, arguments, folder):
+    return subprocess.Popen([program, *arguments], cwd=folder, stderr=subprocess.PIPE, text=True)
+
+
+def finish(run):
+    """Waits for a run that must succeed."""
+    _, errors = run.communicate()
+    if run.returncode != 0:
+        sys.exit(f"{' '.join(run.args)}: exit code {run.returncode}: {errors}")
+
+
+def stamp(file):
+    return file.stat().st_mtime_ns if file.exists() else None
+
+
+def is_killed(run, state, delay, wait_for_state):
+    """Kills a run `delay` seconds after its start or its first checkpoint, unless it ends before."""
+    old = stamp(state)
+    while wait_for_state and run.poll() is None and stamp(state) in (None, old):
+        time.sleep(0.002)
     try:
-        _, errors = run.communicate(timeout=kill_after)
+        run.wait(timeout=delay)
+        return False
     except subprocess.TimeoutExpired:
         run.kill()
         run.communicate()
-        return False
-    if run.returncode != 0:
-        sys.exit(f"{' '.join(arguments)}: exit code {run.returncode}: {errors}")
-    return True
+        return True
 
 
 def main():
@@ -58,23 +73,26 @@ def main():
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
         number = 0
-        while kills < options.kills:
+        while (kills < options.kills or resumed * 2 < kills) and number < 10 * options.kills:
             scene, *more = RENDERS[number % len(RENDERS)]
             number += 1
             arguments = ["render", str(scenes / f"{scene}.glb"), "-q", "--height", "64", *more]
             key = tuple(arguments)
             if key not in whole:
                 begun = time.monotonic()
-                render(program, [*arguments, "-o", "whole.exr"], folder)
+                finish(start(program, [*arguments, "-o", "whole.exr"], folder))
                 whole[key] = (pixels(folder / "whole.exr"), time.monotonic() - begun)
             expected, seconds = whole[key]
             saved = [*arguments, "-o", "broken.exr", "--checkpoint", "state", "--resume",
                      "--checkpoint-every", "0"]
             breaks = 0
-            while not render(program, saved, folder, chance.uniform(0.3, 1) * seconds
-                             if breaks < 4 else None):
+            run = start(program, saved, folder)
+            while breaks < 4 and is_killed(run, folder / "state", chance.uniform(0, 0.7 * seconds),
+                                           wait_for_state=chance.random() < 0.7):
                 breaks += 1
                 resumed += (folder / "state").exists()
+                run = start(program, saved, folder)
+            finish(run)
             kills += breaks
             if pixels(folder / "broken.exr") != expected or not expected:
                 sys.exit(f"{' '.join(saved)}: another image after {breaks} kills")
@@ -82,8 +100,8 @@ def main():
             (folder / "state").unlink()
     print(f"{kills} kills, {resumed} of them with a checkpoint to go on from: all {number} images "
           "equal to those of renders without a break")
-    if resumed * 2 < kills:
-        sys.exit("too few kills came after a checkpoint")
+    if kills < options.kills or resumed * 2 < kills:
+        sys.exit("too few of them")
 
 
 if __name__ == "__main__":

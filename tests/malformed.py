@@ -164,6 +164,14 @@ INF = struct.pack("<f", float("inf"))
 INFINITIES = "data:application/octet-stream;base64," + base64.b64encode(8 * INF).decode()
 
 # name: (change, words that the message must hold)
+def more_instances_than_memory(document):
+    """2^24 instances, whose places are zeros that the file need not hold, of 1000 primitives."""
+    document["accessors"].append({"componentType": 5126, "type": "VEC3", "count": 1 << 24})
+    document["meshes"][document["nodes"][0]["mesh"]]["primitives"] *= 1000
+    document["nodes"][0]["extensions"] = {"EXT_mesh_gpu_instancing": {
+        "attributes": {"TRANSLATION": len(document["accessors"]) - 1}}}
+
+
 CHANGES = {
     "asset missing": (put(["asset"], ...), ["'asset' is missing"]),
     "asset no object": (put(["asset"], 3), ["asset", "3", "not an object"]),
@@ -360,6 +368,7 @@ CHANGES = {
         lambda d: d["nodes"][0].update(extensions={"EXT_mesh_gpu_instancing": {
             "attributes": {"TRANSLATION": 0, "SCALE": 3}}}) or d["accessors"].append(
                 dict(d["accessors"][0], count=3)), ["EXT_mesh_gpu_instancing.SCALE", "3 values for 4"]),
+    "instances beyond memory": (more_instances_than_memory, ["triangles", "GiB of memory"]),
     "accessor min of two": (put(POSITION + ["min"], [0, 0]), ["accessors[0].min", "2"]),
     "view buffer beyond": (put(VIEW + ["buffer"], 1), ["bufferViews[0].buffer", "1"]),
     "view length 0": (put(VIEW + ["byteLength"], 0), ["bufferViews[0].byteLength"]),

@@ -22,7 +22,9 @@ namespace manylight {
 /// meant to be rendered with.
 ///
 /// `seconds`: the moment of the file's first animation; none: everything at rest.
-[[nodiscard]] Scene load_scene(const std::string& path, std::optional<double> seconds = {});
+/// `most_bytes`: refuses scenes whose triangles would need more memory; 0: than the machine has.
+[[nodiscard]] Scene load_scene(const std::string& path, std::optional<double> seconds = {},
+                               std::size_t most_bytes = 0);
 
 /// A glTF file before it has a meaning.
 struct GltfFile {

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 #define GLM_ENABLE_EXPERIMENTAL
+#include <unistd.h>
+
 #include <algorithm>
 #include <glm/glm.hpp>
 #include <glm/gtx/component_wise.hpp>
@@ -17,6 +19,11 @@ namespace {
 // cd/m2.
 constexpr float brightest = 1e15f;  // cd, lx or cd/m2
 constexpr float farthest = 1e9f;    // m
+
+// What a scene holds of each at the least: a position and a normal; a triangle's corners, material,
+// bounds while the BVH is built and place in it.
+constexpr double vertex_bytes = 24;
+constexpr double triangle_bytes = 96;
 
 float number(const tinygltf::Value& object, const char* key, double otherwise) {
     if (!object.IsObject() || !object.Has(key)) return static_cast<float>(otherwise);
@@ -39,12 +46,15 @@ class Loader {
         scene_.file = file.path;
     }
 
-    Scene load() {
+    // `most_bytes`: 0 for the machine's memory.
+    Scene load(std::size_t most_bytes) {
+        find_nodes();
+        check_memory(most_bytes != 0 ? most_bytes : machine_memory());
         for (const tinygltf::Material& material : model_.materials) add_material(material);
         scene_.materials.push_back(default_material());
         scene_.material_names.emplace_back();
         coordinate_sets_ = load_textures(file_, model_, used_materials(), scene_);
-        visit_nodes();
+        for (const int node : nodes_) visit_node(node);
         find_alpha(scene_);
         note_what_is_not_rendered();
         if (!has_normals_) scene_.vertex_normals.clear();
@@ -135,7 +145,8 @@ class Loader {
         return d / length;
     }
 
-    void visit_nodes() {
+    // The nodes of the scene, parents first.
+    void find_nodes() {
         std::vector<int> roots;
         if (!model_.scenes.empty()) {
             const auto& scene = model_.scenes[std::max(model_.defaultScene, 0)];
@@ -149,15 +160,53 @@ class Loader {
         while (!open.empty()) {
             const int index = open.back();
             open.pop_back();
-            const tinygltf::Node& node = model_.nodes[index];
-            const glm::dmat4& to_world = pose_.to_world(index);
-            check_transform(to_world, index);
-            if (node.mesh >= 0) add_instances(index);
-            if (node.camera >= 0) add_camera(index, to_world);
-            const auto& light = extension(node.extensions, "KHR_lights_punctual");
-            if (light.IsObject()) add_light(light.Get("light").GetNumberAsInt(), index, to_world);
-            open.insert(open.end(), node.children.rbegin(), node.children.rend());
+            nodes_.push_back(index);
+            const std::vector<int>& children = model_.nodes[index].children;
+            open.insert(open.end(), children.rbegin(), children.rend());
         }
+    }
+
+    static std::size_t machine_memory() {
+        return static_cast<std::size_t>(sysconf(_SC_PHYS_PAGES)) *
+               static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
+    }
+
+    // Refuses scenes whose triangles, instances counted one by one, cannot fit: a file of a
+    // kilobyte may ask for any number of them.
+    void check_memory(std::size_t most_bytes) const {
+        double vertices = 0;
+        double triangles = 0;
+        for (const int node : nodes_) {
+            if (model_.nodes[node].mesh < 0) continue;
+            const auto instances = static_cast<double>(count_instances(file_, node));
+            for (const auto& primitive : model_.meshes[model_.nodes[node].mesh].primitives) {
+                if (!is_rendered(primitive)) continue;
+                const std::size_t count =
+                    model_.accessors[primitive.attributes.at("POSITION")].count;
+                const std::size_t corners =
+                    primitive.indices < 0 ? count : model_.accessors[primitive.indices].count;
+                vertices += instances * static_cast<double>(count);
+                triangles += instances *
+                             static_cast<double>(is_list(primitive.mode) ? corners / 3 : corners);
+            }
+        }
+        constexpr double gib = 1 << 30;
+        const double bytes = vertices * vertex_bytes + triangles * triangle_bytes;
+        if (bytes > static_cast<double>(most_bytes))
+            throw InputError(
+                "{}: its {:.0f} triangles, instances counted one by one, need at least {:.1f} GiB, "
+                "and there are {:.1f} GiB of memory",
+                scene_.file, triangles, bytes / gib, static_cast<double>(most_bytes) / gib);
+    }
+
+    void visit_node(int index) {
+        const tinygltf::Node& node = model_.nodes[index];
+        const glm::dmat4& to_world = pose_.to_world(index);
+        check_transform(to_world, index);
+        if (node.mesh >= 0) add_instances(index);
+        if (node.camera >= 0) add_camera(index, to_world);
+        const auto& light = extension(node.extensions, "KHR_lights_punctual");
+        if (light.IsObject()) add_light(light.Get("light").GetNumberAsInt(), index, to_world);
     }
 
     void check_transform(const glm::dmat4& to_world, int node) const {
@@ -232,12 +281,22 @@ class Loader {
         scene_.light_names.push_back(name.empty() ? in.name : name);
     }
 
+    static bool is_lines_or_points(int mode) {
+        return mode >= 0 && mode <= TINYGLTF_MODE_LINE_STRIP;
+    }
+
+    static bool is_rendered(const tinygltf::Primitive& primitive) {
+        return !is_lines_or_points(primitive.mode) && primitive.attributes.contains("POSITION");
+    }
+
+    static bool is_list(int mode) { return mode == TINYGLTF_MODE_TRIANGLES || mode == -1; }
+
     void add_mesh(int node, const glm::dmat4& to_world) {
         const int index = model_.nodes[node].mesh;
         for (std::size_t p = 0; p < model_.meshes[index].primitives.size(); ++p) {
             const auto& primitive = model_.meshes[index].primitives[p];
             const std::string where = fmt::format("meshes[{}].primitives[{}]", index, p);
-            if (primitive.mode >= 0 && primitive.mode <= TINYGLTF_MODE_LINE_STRIP) {
+            if (is_lines_or_points(primitive.mode)) {
                 ++lines_and_points_;
                 continue;
             }
@@ -422,7 +481,7 @@ class Loader {
 
     void add_triangles(const std::vector<std::uint32_t>& corners, int mode, std::size_t base,
                        bool mirrored, int material) {
-        const bool list = mode == TINYGLTF_MODE_TRIANGLES || mode == -1;
+        const bool list = is_list(mode);
         const std::size_t count = list                  ? corners.size() / 3
                                   : corners.size() >= 3 ? corners.size() - 2
                                                         : 0;
@@ -454,8 +513,7 @@ class Loader {
             if (corners[i] >= vertices)
                 throw InputError("{}: {}.indices: element {} is {}, but there are {} vertices",
                                  scene_.file, where, i, corners[i], vertices);
-        const bool list = primitive.mode == TINYGLTF_MODE_TRIANGLES || primitive.mode == -1;
-        if (list && corners.size() % 3 != 0)
+        if (is_list(primitive.mode) && corners.size() % 3 != 0)
             throw InputError("{}: {}: {} corners are no whole number of triangles", scene_.file,
                              where, corners.size());
         return corners;
@@ -492,6 +550,7 @@ class Loader {
     Accessors accessors_;
     Pose pose_;
     Scene scene_;
+    std::vector<int> nodes_;
     std::vector<unsigned> coordinate_sets_;  // [set of Scene::coordinates] n of TEXCOORD_n
     bool has_normals_ = false;
     std::size_t lines_and_points_ = 0;
@@ -500,10 +559,10 @@ class Loader {
 
 }  // namespace
 
-Scene load_scene(const std::string& path, std::optional<double> seconds) {
+Scene load_scene(const std::string& path, std::optional<double> seconds, std::size_t most_bytes) {
     const GltfFile file = read_gltf(path);
     check_gltf(file);
-    return Loader(file, seconds).load();
+    return Loader(file, seconds).load(most_bytes);
 }
 
 }  // namespace manylight

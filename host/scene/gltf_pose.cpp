@@ -166,16 +166,37 @@ std::vector<glm::dmat4> Pose::joint_matrices(int index, Accessors& accessors) co
     return out;
 }
 
-std::vector<glm::dmat4> mesh_instances(const GltfFile& file, int node, Accessors& accessors) {
-    constexpr const char* name = "EXT_mesh_gpu_instancing";
+namespace {
+
+constexpr const char* instancing = "EXT_mesh_gpu_instancing";
+
+// The attributes of a node's instances; null where it has none.
+const nlohmann::json* instance_attributes(const GltfFile& file, int node) {
     const nlohmann::json& json = file.json["nodes"][node];
-    if (!json.contains("extensions") || !json["extensions"].contains(name)) return {glm::dmat4(1)};
-    const nlohmann::json& attributes = json["extensions"][name]["attributes"];
+    if (!json.contains("extensions") || !json["extensions"].contains(instancing)) return nullptr;
+    return &json["extensions"][instancing]["attributes"];
+}
+
+}  // namespace
+
+std::size_t count_instances(const GltfFile& file, int node) {
+    const nlohmann::json* attributes = instance_attributes(file, node);
+    if (attributes == nullptr) return 1;
+    for (const char* key : {"TRANSLATION", "ROTATION", "SCALE"})
+        if (attributes->contains(key))
+            return file.json["accessors"][(*attributes)[key].get<std::size_t>()]["count"];
+    return 0;
+}
+
+std::vector<glm::dmat4> mesh_instances(const GltfFile& file, int node, Accessors& accessors) {
+    const nlohmann::json* found = instance_attributes(file, node);
+    if (found == nullptr) return {glm::dmat4(1)};
+    const nlohmann::json& attributes = *found;
     std::vector<glm::dmat4> out;
     const auto read = [&](const char* key, Attribute kind) {
         std::vector<glm::vec4> values;
         if (!attributes.contains(key)) return values;
-        const std::string where = fmt::format("nodes[{}].extensions.{}.{}", node, name, key);
+        const std::string where = fmt::format("nodes[{}].extensions.{}.{}", node, instancing, key);
         values = accessors.vectors(attributes[key], kind, where);
         if (!out.empty() && out.size() != values.size())
             throw InputError("{}: {}: {} values for {} instances", file.path, where, values.size(),

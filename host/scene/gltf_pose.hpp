@@ -51,5 +51,7 @@ class Pose {
 /// identity alone where it has none.
 [[nodiscard]] std::vector<glm::dmat4> mesh_instances(const GltfFile& file, int node,
                                                      Accessors& accessors);
+/// How many they are, without reading them.
+[[nodiscard]] std::size_t count_instances(const GltfFile& file, int node);
 
 }  // namespace manylight
