@@ -205,6 +205,7 @@ class CommandTest(unittest.TestCase):
                 (["--aov", "error", "--spp", 1], ["--spp 1", "pairs"]),
                 (["--aov", "smell"], ["--aov", "smell"]),
                 (["--aov", "cluster", "--sampler", "power"], ["--aov", "cluster", "power"]),
+                (["--lamp-scale", 0], ["--lamp-scale", "0"]),
                 (["--exposure", "bright"], ["--exposure", "bright"]),
                 (["--colour"], ["--colour"])):
             with self.subTest(arguments=arguments):

@@ -2,6 +2,8 @@
 // What a glTF file means. Refusals are in malformed.py.
 #include "scene/gltf.hpp"
 
+#include <draco/compression/encode.h>
+#include <draco/mesh/triangle_soup_mesh_builder.h>
 #include <meshoptimizer.h>
 
 #include <cmath>
@@ -84,9 +86,12 @@ class GltfTest {
     json& primitive() { return document["meshes"][0]["primitives"][0]; }
 
     [[nodiscard]] Scene load(std::optional<double> seconds = {}) const {
+        return load(LoadOptions{.seconds = seconds});
+    }
+    [[nodiscard]] Scene load(const LoadOptions& options) const {
         const std::string path = test::temporary("test.gltf");
         std::ofstream(path) << document;
-        return load_scene(path, seconds);
+        return load_scene(path, options);
     }
 };
 
@@ -317,6 +322,25 @@ TEST(gltf, punctual_lights) {
     EXPECT_NEAR(std::cos(0.6f) * spot.edge.x + spot.edge.y, 0, 1e-5);
     EXPECT_EQ(scene.lights[2].position.w, LIGHT_DIRECTIONAL);
     expect_near(scene.lights[2].axis, {0, 1, 0});
+    const Scene scaled = file.load({.lamp_scale = 0.5});
+    for (int i = 0; i < 3; ++i)
+        EXPECT_EQ(glm::vec3(scaled.lights[i].emission), 0.5f * glm::vec3(scene.lights[i].emission));
+}
+
+// As Blender exports spots without blend.
+TEST(gltf, sharp_spots) {
+    GltfTest file;
+    file.document["extensions"]["KHR_lights_punctual"]["lights"] = {
+        {{"type", "spot"}, {"spot", {{"innerConeAngle", 0.5}, {"outerConeAngle", 0.5}}}}};
+    file.document["nodes"].push_back({{"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}});
+    file.document["scenes"][0]["nodes"] = {0, 1};
+    const Light spot = file.load().lights.at(0);
+    const auto falloff = [&](double angle) {
+        return std::clamp(static_cast<float>(std::cos(angle)) * spot.edge.x + spot.edge.y, 0.f,
+                          1.f);
+    };
+    EXPECT_EQ(falloff(0.4999), 1);
+    EXPECT_EQ(falloff(0.5001), 0);
 }
 
 TEST(gltf, embedded_data) {
@@ -388,6 +412,86 @@ TEST(gltf, quantized_attributes) {
     expect_near(triangle(scene, 0)[0], {-1, 0, 0});
     expect_near(triangle(scene, 0)[1], {1, 0, 0});
     expect_near(triangle(scene, 0)[2], {0, -16384 / 32767.f, 0});
+}
+
+// KHR_draco_mesh_compression, written by the library's encoder: a strip of squares, its indices in
+// all types; both of Draco's ways to store triangles.
+TEST(gltf, draco) {
+    constexpr int squares = 5;
+    constexpr int points = 2 * squares + 2;
+    draco::TriangleSoupMeshBuilder builder;
+    builder.Start(2 * squares);
+    const int position =
+        builder.AddAttribute(draco::GeometryAttribute::POSITION, 3, draco::DT_FLOAT32);
+    const int color =
+        builder.AddAttribute(draco::GeometryAttribute::COLOR, 4, draco::DT_UINT8, true);
+    const auto corner = [](int c) {
+        return std::array<float, 3>{static_cast<float>(c / 2), static_cast<float>(c % 2), 0.5f};
+    };
+    const auto add_triangle = [&](int face, int a, int b, int c) {
+        const std::array<float, 3> v[] = {corner(a), corner(b), corner(c)};
+        const std::uint8_t colors[][4] = {{static_cast<std::uint8_t>(a), 0, 0, 255},
+                                          {static_cast<std::uint8_t>(b), 0, 0, 255},
+                                          {static_cast<std::uint8_t>(c), 0, 0, 255}};
+        const draco::FaceIndex at(face);
+        builder.SetAttributeValuesForFace(position, at, &v[0], &v[1], &v[2]);
+        builder.SetAttributeValuesForFace(color, at, colors[0], colors[1], colors[2]);
+    };
+    for (int s = 0; s < squares; ++s) {
+        add_triangle(2 * s, 2 * s, 2 * s + 2, 2 * s + 1);
+        add_triangle(2 * s + 1, 2 * s + 1, 2 * s + 2, 2 * s + 3);
+    }
+    const std::unique_ptr<draco::Mesh> mesh = builder.Finalize();
+    ASSERT_EQ(mesh->num_points(), unsigned{points});
+    for (const bool is_edgebreaker : {false, true}) {
+        for (const int type : {5121, 5123, 5125}) {
+            draco::Encoder encoder;
+            encoder.SetEncodingMethod(is_edgebreaker ? draco::MESH_EDGEBREAKER_ENCODING
+                                                     : draco::MESH_SEQUENTIAL_ENCODING);
+            draco::EncoderBuffer out;
+            ASSERT_TRUE(encoder.EncodeMeshToBuffer(*mesh, &out).ok());
+            GltfTest file;
+            file.document["extensionsUsed"] = {"KHR_draco_mesh_compression"};
+            file.document["extensionsRequired"] = {"KHR_draco_mesh_compression"};
+            json& accessors = file.document["accessors"];
+            const auto packed = file.add(std::vector<char>(out.data(), out.data() + out.size()),
+                                         5121, "SCALAR", out.size());
+            const json view = accessors[packed]["bufferView"];
+            const std::size_t first = accessors.size();
+            accessors.push_back({{"componentType", 5126}, {"type", "VEC3"}, {"count", points}});
+            accessors.push_back({{"componentType", 5121},
+                                 {"type", "VEC4"},
+                                 {"count", points},
+                                 {"normalized", true}});
+            accessors.push_back(
+                {{"componentType", type}, {"type", "SCALAR"}, {"count", 6 * squares}});
+            file.primitive() = {{"attributes", {{"POSITION", first}, {"COLOR_0", first + 1}}},
+                                {"indices", first + 2},
+                                {"extensions",
+                                 {{"KHR_draco_mesh_compression",
+                                   {{"bufferView", view},
+                                    {"attributes",
+                                     {{"POSITION", mesh->attribute(position)->unique_id()},
+                                      {"COLOR_0", mesh->attribute(color)->unique_id()}}}}}}}};
+            const Scene scene = file.load();
+            EXPECT_TRUE(scene.warnings.empty());
+            ASSERT_EQ(scene.triangle_count(), std::size_t{2 * squares});
+            ASSERT_EQ(scene.vertices.size(), std::size_t{points});
+            double area = 0;
+            for (std::size_t t = 0; t < scene.triangle_count(); ++t) {
+                const std::vector<glm::vec3> v = triangle(scene, t);
+                area += glm::cross(v[1] - v[0], v[2] - v[0]).z / 2;
+                expect_near(face_normal(scene, t), {0, 0, 1});
+            }
+            EXPECT_NEAR(area, squares, 1e-4);
+            for (std::size_t v = 0; v < scene.vertices.size(); ++v)
+                EXPECT_NEAR(scene.colors[v].x * 255, 2 * scene.vertices[v].x + scene.vertices[v].y,
+                            1e-3);
+            // Numbers that the file does not announce.
+            file.document["accessors"][first + 2]["count"] = 6 * squares - 3;
+            EXPECT_THROW((void)file.load(), InputError);
+        }
+    }
 }
 
 // EXT_meshopt_compression, written by the library's encoder: positions, indices, and normals as

@@ -151,6 +151,20 @@ def compressed(whole=48, **changes):
     return change
 
 
+def draco(data=b"", mode=4, view=None):
+    """The first primitive as one of Draco data."""
+    def change(document):
+        data_uri = "data:application/octet-stream;base64," + base64.b64encode(data or DATA).decode()
+        document["buffers"].append({"byteLength": len(data or DATA), "uri": data_uri})
+        document["bufferViews"].append({"buffer": len(document["buffers"]) - 1,
+                                        "byteLength": len(data or DATA)})
+        document["meshes"][0]["primitives"][0].update(mode=mode, extensions={
+            "KHR_draco_mesh_compression": {
+                "bufferView": len(document["bufferViews"]) - 1 if view is None else view,
+                "attributes": {"POSITION": 0}}})
+    return change
+
+
 POSITION, INDEX = ["accessors", 0], ["accessors", 1]
 VIEW, BUFFER = ["bufferViews", 0], ["buffers", 0]
 MATERIAL, PBR = ["materials", 0], ["materials", 0, "pbrMetallicRoughness"]
@@ -179,8 +193,8 @@ CHANGES = {
     "version 1": (put(["asset", "version"], "1.0"), ["asset.version", "1.0"]),
     "version a number": (put(["asset", "version"], 2), ["asset.version", "not a string"]),
     "minimum version": (put(["asset", "minVersion"], "2.9"), ["asset.minVersion", "2.9"]),
-    "unknown required extension": (put(["extensionsRequired"], ["KHR_draco_mesh_compression"]),
-                                   ["extensionsRequired[0]", "KHR_draco_mesh_compression"]),
+    "unknown required extension": (put(["extensionsRequired"], ["EXT_structural_metadata"]),
+                                   ["extensionsRequired[0]", "EXT_structural_metadata"]),
     "required extension no string": (put(["extensionsRequired"], [7]), ["extensionsRequired[0]"]),
     "extensions used no array": (put(["extensionsUsed"], {}), ["extensionsUsed", "not an array"]),
     "nodes no array": (put(["nodes"], {"0": {}}), ["nodes", "not an array"]),
@@ -364,6 +378,21 @@ CHANGES = {
                      ["byteLength", "1 bytes cannot hold"]),
     "fallback buffer without compression": (
         lambda d: (compressed()(d), put(VIEW + ["extensions"], ...)(d)), ["bufferViews[0]", "no data"]),
+    "draco strip": (draco(mode=5), ["primitives[0].mode", "5"]),
+    "draco view beyond": (draco(view=9), ["KHR_draco_mesh_compression.bufferView", "9"]),
+    "draco bytes": (draco(), ["meshes[0].primitives[0]", "no Draco data"]),
+    "draco version": (draco(b"DRACO\1\3\1\0\0\0\2\4"), ["1.3"]),
+    "draco points": (draco(b"DRACO\2\2\0\0\0\0\2\4"), ["no mesh"]),
+    "draco metadata": (draco(b"DRACO\2\2\1\0\0\x80\2\4"), ["metadata"]),
+    "draco triangles": (draco(b"DRACO\2\2\1\0\0\0\x82\1\4"), ["130 triangles"]),
+    "draco vertices": (draco(b"DRACO\2\2\1\0\0\0\2\5"), ["5 vertices"]),
+    "draco edgebreaker's triangles": (draco(b"DRACO\2\2\1\1\0\0\0\4\5"), ["5 triangles"]),
+    "draco ends early": (draco(b"DRACO\2\2\1\0\0\0\x82"), ["end early"]),
+    "draco without connectivity": (draco(b"DRACO\2\2\1\0\0\0\2\4"), ["KHR_draco_mesh_compression"]),
+    "draco bomb": (lambda d: (draco()(d), put(INDEX + ["bufferView"], ...)(d),
+                              put(INDEX + ["count"], 3 * 5_500_000)(d), d["meshes"][0].update(
+                                  primitives=d["meshes"][0]["primitives"] * 2)),
+                   ["would decompress to more than"]),
     "instances of different numbers": (
         lambda d: d["nodes"][0].update(extensions={"EXT_mesh_gpu_instancing": {
             "attributes": {"TRANSLATION": 0, "SCALE": 3}}}) or d["accessors"].append(

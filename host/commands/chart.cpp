@@ -44,6 +44,7 @@ std::string view_options(const ChartArguments& arguments, const LoadedScene& loa
         out += fmt::format(" --shift {},{}", scene.shift.first, scene.shift.second);
     if (scene.emitter_points) out += fmt::format(" --emitter-points {}", *scene.emitter_points);
     if (scene.seconds) out += fmt::format(" --at {}", *scene.seconds);
+    if (scene.lamp_scale != 1) out += fmt::format(" --lamp-scale {}", scene.lamp_scale);
     if (!scene.device.empty()) out += " --device " + quote(scene.device);
     if (scene.threads > 0) out += fmt::format(" --threads {}", scene.threads);
     out += fmt::format(" --width {} --height {}", loaded.width, loaded.height);

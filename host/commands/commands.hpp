@@ -20,6 +20,7 @@ struct SceneArguments {
     std::string camera;
     std::optional<unsigned> emitter_points;
     std::optional<double> seconds;  // of the file's first animation; none: at rest
+    double lamp_scale = 1;          // of punctual lights' intensities
     std::string device;
     unsigned threads = 0;
     unsigned width = 0;                        // 0: from the height and the camera's aspect

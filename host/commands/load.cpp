@@ -31,7 +31,8 @@ void choose_size(LoadedScene& out, const SceneArguments& arguments, double aspec
 LoadedScene load(const SceneArguments& arguments) {
     LoadedScene out;
     Scene& scene = out.scene;
-    scene = load_scene(arguments.file, arguments.seconds);
+    scene = load_scene(arguments.file,
+                       {.seconds = arguments.seconds, .lamp_scale = arguments.lamp_scale});
     for (const std::string& warning : scene.warnings) fmt::print(stderr, "warning: {}\n", warning);
     out.emitter_points = arguments.emitter_points.value_or(scene.emitter_points.value_or(0));
     add_emitters(scene, out.emitter_points);

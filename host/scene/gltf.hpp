@@ -14,6 +14,12 @@
 
 namespace manylight {
 
+struct LoadOptions {
+    std::optional<double> seconds = {};  // the moment of the first animation; none: all at rest
+    double lamp_scale = 1;               // of punctual lights' intensities
+    std::size_t most_bytes = 0;          // that triangles may need; 0: what the machine has
+};
+
 /// Loads a .gltf or .glb file. Throws InputError naming the file, the object and the value for
 /// everything that the glTF 2.0 specification forbids and that loading depends on.
 ///
@@ -21,10 +27,7 @@ namespace manylight {
 /// scene's extras may hold "emitter_points", the number of oriented points that its emitters are
 /// meant to be rendered with.
 ///
-/// `seconds`: the moment of the file's first animation; none: everything at rest.
-/// `most_bytes`: refuses scenes whose triangles would need more memory; 0: than the machine has.
-[[nodiscard]] Scene load_scene(const std::string& path, std::optional<double> seconds = {},
-                               std::size_t most_bytes = 0);
+[[nodiscard]] Scene load_scene(const std::string& path, const LoadOptions& options = {});
 
 /// A glTF file before it has a meaning.
 struct GltfFile {
@@ -45,6 +48,8 @@ struct GltfFile {
 /// Throws InputError that starts with `where`.
 [[nodiscard]] std::vector<unsigned char> read_beside(const GltfFile& file, const std::string& uri,
                                                      const std::string& where);
+
+constexpr const char* draco_extension = "KHR_draco_mesh_compression";
 
 /// The extensions that are rendered.
 [[nodiscard]] const std::set<std::string>& known_extensions();

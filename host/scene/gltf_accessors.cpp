@@ -157,10 +157,15 @@ void Accessors::substitute(const tinygltf::Accessor& accessor, std::size_t bytes
 }
 
 // Where an accessor's elements lie; its range was checked by check_gltf().
-Accessors::Elements Accessors::elements(const tinygltf::Accessor& accessor,
-                                        const std::string& where) {
+Accessors::Elements Accessors::elements(int index, const std::string& where) {
+    const tinygltf::Accessor& accessor = model_.accessors[index];
     const std::size_t bytes = element_bytes(accessor);
     Elements in{nullptr, bytes, accessor.count, {}};
+    const auto provided = provided_.find(index);
+    if (provided != provided_.end()) {
+        in.data = provided->second.data();
+        return in;
+    }
     if (accessor.bufferView >= 0) {
         const std::size_t stride = model_.bufferViews[accessor.bufferView].byteStride;
         if (stride > 0) in.stride = stride;
@@ -182,7 +187,7 @@ std::vector<glm::vec4> Accessors::vectors(int index, Attribute attribute,
     const Form& form = form_of(attribute);
     if (!fits(accessor, form, quantized_))
         throw InputError("{}: {}: accessor {} is not {}", file_.path, where, index, form.name);
-    const Elements in = elements(accessor, where);
+    const Elements in = elements(index, where);
     const int components = tinygltf::GetNumComponentsInType(accessor.type);
     const int bytes = tinygltf::GetComponentSizeInBytes(accessor.componentType);
     std::vector<glm::vec4> out(in.count, glm::vec4(1));
@@ -208,7 +213,7 @@ std::vector<std::uint32_t> Accessors::indices(int index, const std::string& wher
                                                   type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT))
         throw InputError("{}: {}: accessor {} is not SCALAR of an unsigned integer type",
                          file_.path, where, index);
-    const Elements in = elements(accessor, where);
+    const Elements in = elements(index, where);
     std::vector<std::uint32_t> out(in.count);
     for (std::size_t i = 0; i < in.count; ++i)
         out[i] = unsigned_at(in.data + i * in.stride, type, 0);
@@ -221,7 +226,7 @@ std::vector<glm::mat4> Accessors::matrices(int index, const std::string& where) 
         accessor.componentType != TINYGLTF_COMPONENT_TYPE_FLOAT)
         throw InputError("{}: {}: accessor {} is not MAT4 of float (5126)", file_.path, where,
                          index);
-    const Elements in = elements(accessor, where);
+    const Elements in = elements(index, where);
     std::vector<glm::mat4> out(in.count);
     for (std::size_t i = 0; i < in.count; ++i)
         std::memcpy(&out[i], in.data + i * in.stride, sizeof(glm::mat4));

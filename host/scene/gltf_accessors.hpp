@@ -43,6 +43,13 @@ class Accessors {
     /// 4 x 4 matrices of floats.
     [[nodiscard]] std::vector<glm::mat4> matrices(int accessor, const std::string& where);
 
+    /// Has an accessor read `bytes`, packed, instead of its buffer view.
+    void provide(int accessor, std::vector<unsigned char> bytes) {
+        provided_[accessor] = std::move(bytes);
+    }
+    /// The bytes of a buffer view, decompressed.
+    [[nodiscard]] std::span<const unsigned char> view_bytes(int view);
+
   private:
     struct Elements {
         const unsigned char* data;
@@ -51,16 +58,16 @@ class Accessors {
         std::vector<unsigned char> own;  // of sparse ones: data points there
     };
 
-    [[nodiscard]] Elements elements(const tinygltf::Accessor& accessor, const std::string& where);
+    [[nodiscard]] Elements elements(int accessor, const std::string& where);
     void substitute(const tinygltf::Accessor& accessor, std::size_t bytes, const std::string& where,
                     std::vector<unsigned char>& out);
-    [[nodiscard]] std::span<const unsigned char> view_bytes(int view);
     [[nodiscard]] std::vector<unsigned char> decompress(int view, const nlohmann::json& compressed);
 
     const GltfFile& file_;
     const tinygltf::Model& model_;
     bool quantized_;
     std::map<int, std::vector<unsigned char>> decompressed_;  // by buffer view
+    std::map<int, std::vector<unsigned char>> provided_;      // by accessor
 };
 
 }  // namespace manylight

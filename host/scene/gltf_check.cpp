@@ -388,12 +388,37 @@ class Checker {
             optional_index(primitive, "material", "materials", "material");
             if (primitive.has("mode") && primitive["mode"].integer() > 6)
                 primitive["mode"].refuse("{} is no primitive mode", primitive["mode"].shown());
+            if (primitive.has("extensions") &&
+                primitive["extensions"].object().has(draco_extension))
+                draco(primitive, primitive["extensions"][draco_extension].object());
             if (!primitive.has("targets")) continue;
             const JsonValue targets = primitive["targets"].array();
             for (std::size_t t = 0; t < targets.size(); ++t)
                 for (const std::string& name : targets.at(t).object().keys())
                     (void)targets.at(t)[name.c_str()].index(count("accessors"), "accessor");
         }
+    }
+
+    // KHR_draco_mesh_compression: what decoding takes for granted, and what it may grow to.
+    void draco(const JsonValue& primitive, const JsonValue& in) {
+        if (primitive.has("mode") && primitive["mode"].integer() != 4)
+            primitive["mode"].refuse("{} cannot be compressed; 4 can", primitive["mode"].shown());
+        (void)in["bufferView"].index(count("bufferViews"), "bufferView");
+        const JsonValue ids = in["attributes"].object();
+        for (const std::string& name : ids.keys())
+            if (ids[name.c_str()].integer() > 0xffffffffu)
+                ids[name.c_str()].refuse("{} is no attribute", ids[name.c_str()].shown());
+        const JsonValue attributes = primitive["attributes"].object();
+        const auto count_of = [&](const JsonValue& accessor) {
+            return root_["accessors"].at(accessor.index(count("accessors"), "accessor"))["count"];
+        };
+        const JsonValue corners = count_of(primitive["indices"]);
+        if (corners.integer() % 3 != 0)
+            corners.refuse("{} corners are no whole number of triangles", corners.shown());
+        // At the least: a triangle's corners in three tables, a position's numbers in two.
+        decompressed_ += 12 * corners.integer() + 24 * count_of(attributes["POSITION"]).integer();
+        if (decompressed_ > most_decompressed())
+            in.refuse("the file would decompress to more than {} bytes", most_decompressed());
     }
 
     void camera(const JsonValue& camera, std::size_t) {
@@ -426,8 +451,9 @@ class Checker {
         const double inner =
             spot.has("innerConeAngle") ? spot["innerConeAngle"].at_least_zero() : 0;
         if (outer > 1.5707964) spot["outerConeAngle"].refuse("{} is more than pi / 2", outer);
-        if (inner >= outer)
-            spot.refuse("innerConeAngle {} is not below outerConeAngle {}", inner, outer);
+        // Equal ones are forbidden too, but that is how Blender exports sharp spots.
+        if (inner > outer)
+            spot.refuse("innerConeAngle {} is more than outerConeAngle {}", inner, outer);
     }
 
     void skin(const JsonValue& skin, std::size_t) {
@@ -540,16 +566,11 @@ class Checker {
 }  // namespace
 
 const std::set<std::string>& known_extensions() {
-    static const std::set<std::string> known = {"EXT_meshopt_compression",
-                                                "EXT_mesh_gpu_instancing",
-                                                "EXT_texture_webp",
-                                                "KHR_lights_punctual",
-                                                "KHR_materials_emissive_strength",
-                                                "KHR_materials_ior",
-                                                "KHR_materials_specular",
-                                                "KHR_materials_unlit",
-                                                "KHR_mesh_quantization",
-                                                "KHR_texture_transform"};
+    static const std::set<std::string> known = {
+        "EXT_meshopt_compression", "EXT_mesh_gpu_instancing", "EXT_texture_webp",
+        draco_extension,           "KHR_lights_punctual",     "KHR_materials_emissive_strength",
+        "KHR_materials_ior",       "KHR_materials_specular",  "KHR_materials_unlit",
+        "KHR_mesh_quantization",   "KHR_texture_transform"};
     return known;
 }
 

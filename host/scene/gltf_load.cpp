@@ -9,6 +9,7 @@
 #include "error.hpp"
 #include "scene/alpha.hpp"
 #include "scene/gltf.hpp"
+#include "scene/gltf_draco.hpp"
 #include "scene/gltf_pose.hpp"
 #include "scene/gltf_textures.hpp"
 
@@ -38,22 +39,23 @@ const tinygltf::Value& extension(const tinygltf::ExtensionMap& extensions, const
 
 class Loader {
   public:
-    Loader(const GltfFile& file, std::optional<double> seconds)
+    Loader(const GltfFile& file, const LoadOptions& options)
         : file_(file),
           model_(parse_gltf(file)),
           accessors_(file, model_),
-          pose_(file, model_, accessors_, seconds) {
+          pose_(file, model_, accessors_, options.seconds),
+          options_(options) {
         scene_.file = file.path;
     }
 
-    // `most_bytes`: 0 for the machine's memory.
-    Scene load(std::size_t most_bytes) {
+    Scene load() {
         find_nodes();
-        check_memory(most_bytes != 0 ? most_bytes : machine_memory());
+        check_memory(options_.most_bytes != 0 ? options_.most_bytes : machine_memory());
         for (const tinygltf::Material& material : model_.materials) add_material(material);
         scene_.materials.push_back(default_material());
         scene_.material_names.emplace_back();
         coordinate_sets_ = load_textures(file_, model_, used_materials(), scene_);
+        decode_meshes();
         for (const int node : nodes_) visit_node(node);
         find_alpha(scene_);
         note_what_is_not_rendered();
@@ -166,6 +168,13 @@ class Loader {
         }
     }
 
+    void decode_meshes() {
+        std::set<int> meshes;
+        for (const int node : nodes_)
+            if (model_.nodes[node].mesh >= 0) meshes.insert(model_.nodes[node].mesh);
+        for (const int mesh : meshes) decode_draco(file_, model_, mesh, accessors_);
+    }
+
     static std::size_t machine_memory() {
         return static_cast<std::size_t>(sysconf(_SC_PHYS_PAGES)) *
                static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
@@ -258,10 +267,11 @@ class Loader {
         const tinygltf::Light& in = model_.lights[index];
         glm::vec3 color(1);
         if (in.color.size() == 3) color = glm::vec3(in.color[0], in.color[1], in.color[2]);
-        color *= static_cast<float>(in.intensity);
+        color *= static_cast<float>(in.intensity * options_.lamp_scale);
         if (color == glm::vec3(0)) return;
         check_brightness(color,
-                         fmt::format("KHR_lights_punctual.lights[{}]: color x intensity", index));
+                         fmt::format("KHR_lights_punctual.lights[{}]: color x intensity{}", index,
+                                     options_.lamp_scale == 1 ? "" : " x --lamp-scale"));
         const glm::dvec3 shines =
             in.type == "point" ? glm::dvec3(0) : direction(to_world, {0, 0, -1}, node);
         const auto position = glm::vec3(glm::dvec3(to_world[3]));
@@ -270,7 +280,7 @@ class Loader {
         if (in.type == "spot") {
             light.position.w = LIGHT_SPOT;
             const double outer = std::cos(in.spot.outerConeAngle);
-            const double scale = 1 / std::max(0.001, std::cos(in.spot.innerConeAngle) - outer);
+            const double scale = 1 / std::max(1e-5, std::cos(in.spot.innerConeAngle) - outer);
             light.edge = float4(scale, -outer * scale, 0, 0);
         } else if (in.type == "directional") {
             light.position.w = LIGHT_DIRECTIONAL;
@@ -549,6 +559,7 @@ class Loader {
     tinygltf::Model model_;
     Accessors accessors_;
     Pose pose_;
+    LoadOptions options_;
     Scene scene_;
     std::vector<int> nodes_;
     std::vector<unsigned> coordinate_sets_;  // [set of Scene::coordinates] n of TEXCOORD_n
@@ -559,10 +570,10 @@ class Loader {
 
 }  // namespace
 
-Scene load_scene(const std::string& path, std::optional<double> seconds, std::size_t most_bytes) {
+Scene load_scene(const std::string& path, const LoadOptions& options) {
     const GltfFile file = read_gltf(path);
     check_gltf(file);
-    return Loader(file, seconds).load(most_bytes);
+    return Loader(file, options).load();
 }
 
 }  // namespace manylight

@@ -31,7 +31,15 @@ bool has_fallback_buffers(const GltfFile& file) {
            std::ranges::any_of(file.json["buffers"], is_fallback_buffer);
 }
 
-// The file without what the library refuses.
+// Accessors whose elements are compressed with their primitive (KHR_draco_mesh_compression).
+bool lacks_view(const nlohmann::json& accessor) { return !accessor.contains("bufferView"); }
+
+bool has_accessors_without_view(const GltfFile& file) {
+    return file.json.contains("accessors") && file.json.contains("bufferViews") &&
+           std::ranges::any_of(file.json["accessors"], lacks_view);
+}
+
+// The file without what the library refuses: indices, for one, need a view.
 std::vector<unsigned char> without_refused(const GltfFile& file) {
     nlohmann::json json = file.json;
     json.erase("images");
@@ -39,6 +47,9 @@ std::vector<unsigned char> without_refused(const GltfFile& file) {
         for (nlohmann::json& buffer : json["buffers"])
             if (is_fallback_buffer(buffer))
                 buffer = {{"byteLength", 1}, {"uri", "data:application/octet-stream;base64,AA=="}};
+    if (has_accessors_without_view(file))
+        for (nlohmann::json& accessor : json["accessors"])
+            if (lacks_view(accessor)) accessor["bufferView"] = 0;
     std::string text = json.dump();
     if (!file.is_binary) return {text.begin(), text.end()};
     text.resize((text.size() + 3) / 4 * 4, ' ');
@@ -65,7 +76,8 @@ tinygltf::Model parse_gltf(const GltfFile& file) {
     std::string error;
     std::string warning;
     std::vector<unsigned char> changed;
-    if (has_images_in_text(file.json) || has_fallback_buffers(file))
+    if (has_images_in_text(file.json) || has_fallback_buffers(file) ||
+        has_accessors_without_view(file))
         changed = without_refused(file);
     const std::vector<unsigned char>& bytes = changed.empty() ? file.bytes : changed;
     const auto length = static_cast<unsigned>(bytes.size());
@@ -81,6 +93,8 @@ tinygltf::Model parse_gltf(const GltfFile& file) {
         std::ranges::replace(error, '\n', ' ');
         throw InputError("{}: {}", file.path, error.substr(0, 300));
     }
+    for (std::size_t i = 0; i < model.accessors.size(); ++i)
+        if (lacks_view(file.json["accessors"][i])) model.accessors[i].bufferView = -1;
     return model;
 }
 

@@ -213,7 +213,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         .write(reinterpret_cast<const char*>(data), static_cast<std::streamsize>(size));
     try {
         manylight::Scene scene = manylight::load_scene(
-            file.string(), size % 2 ? std::optional(0.5) : std::nullopt, std::size_t{1} << 28);
+            file.string(), {.seconds = size % 2 ? std::optional(0.5) : std::nullopt,
+                            .most_bytes = std::size_t{1} << 28});
         manylight::add_emitters(scene, 0);
     } catch (const manylight::InputError&) {
     }
