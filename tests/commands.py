@@ -390,6 +390,13 @@ class CommandTest(unittest.TestCase):
             low, high = ratio["over_single_quartiles"]
             self.assertTrue(low <= ratio["over_single"] <= high)
             self.assertGreater(ratio["over_best"], 0)
+        run = self.run_program("bench", SCENES / "pinhole.glb", "--loading", "--json", "b.json")
+        self.assertIn("tinygltf alone", run.stdout)
+        loading = json.loads((self.folder / "b.json").read_text())["loading"]
+        self.assertGreater(loading["load_s"], 0)
+        self.assertGreater(loading["ratio"], 0)
+        self.assertGreater(loading["peak_over_file"], 1)
+        self.refuse("bench", "traversal", "--loading", words=["--loading", "traversal"])
         self.refuse("bench", "none.glb", words=["none.glb"])
         self.refuse("bench", SCENES / "pinhole.glb", "--mesh", "x.glb", words=["--mesh", "x.glb"])
         self.refuse("bench", SCENES / "pinhole.glb", "--view", "far", words=["--view", "far"])

@@ -287,8 +287,8 @@ TEST(frame, kernels_are_compiled_for_the_scene_at_hand) {
     const auto defines = [](const std::string& name) {
         const test::TestScene& s = test::scene_named(name);
         Device device = test::devices().front();
-        const DeviceScene uploaded =
-            upload_scene(device, s.scene, build_wide_bvh(s.scene, 8, 8, 10), s.camera);
+        const WideBvh bvh = build_wide_bvh(s.scene, 8, 8, 10);
+        const DeviceScene uploaded = upload_scene(device, s.scene, bvh, s.camera);
         Defines all = uploaded.shading;
         all.insert(uploaded.surfaces.begin(), uploaded.surfaces.end());
         all.insert(uploaded.emission.begin(), uploaded.emission.end());

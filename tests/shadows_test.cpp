@@ -87,9 +87,8 @@ std::vector<RayPacket> hard_packets(const Scene& scene) {
     return packets;
 }
 
-DeviceTracer tracer_on(Device device, const Scene& scene, unsigned lanes, bool portable) {
+DeviceTracer tracer_on(Device device, const Scene& scene, const WideBvh& bvh, bool portable) {
     const Camera camera{float4(1, 1, 2, 0), float4(0), float4(0), float4(0)};
-    const WideBvh bvh = build_wide_bvh(scene, lanes, lanes, 4);
     DeviceScene uploaded = upload_scene(device, scene, bvh, camera);
     if (portable) uploaded.traversal["PORTABLE_LANES"] = 1;
     return {device, uploaded};
@@ -170,8 +169,9 @@ TEST(shadows, hits_of_hard_sets_at_every_width) {
          {std::pair(4u, false), {8u, false}, {16u, false}, {4u, true}, {8u, true}, {16u, true}})
         for (const bool any_hit : {true, false}) {
             const RaySet set{"hard", any_hit, false, hard_packets(scene)};
+            const WideBvh bvh = build_wide_bvh(scene, lanes, lanes, 4);
             for (const Tracing& tracing :
-                 tracer_on(device, scene, lanes, portable).tracings(any_hit)) {
+                 tracer_on(device, scene, bvh, portable).tracings(any_hit)) {
                 const std::vector<float> found = trace(tracing, set);
                 int hits = 0;
                 for (std::size_t i = 0; i < found.size(); ++i) {

@@ -78,8 +78,9 @@ struct Binning {
 
 class Builder {
   public:
-    Builder(std::vector<Reference> references, unsigned leaf_size)
-        : references_(std::move(references)), leaf_size_(leaf_size) {
+    Builder(std::vector<Reference> references, unsigned leaf_size,
+            const std::function<void(double)>& report)
+        : references_(std::move(references)), leaf_size_(leaf_size), report_(report) {
         most_nodes_ = 2 * references_.size() - 1;
         nodes_ = std::allocator<BinaryNode>().allocate(most_nodes_);
     }
@@ -114,6 +115,7 @@ class Builder {
         if (middle == end) {
             node.first = static_cast<std::uint32_t>(begin);
             node.count = static_cast<std::uint32_t>(count);
+            note_done(count);
             return;
         }
         const std::uint32_t left = next_node_.fetch_add(2);
@@ -125,6 +127,14 @@ class Builder {
         if (fork) task = std::async(std::launch::async, right);
         build_node(left, begin, middle, depth + 1);
         fork ? task.get() : right();
+    }
+
+    void note_done(std::size_t count) {
+        const std::size_t done = done_.fetch_add(count) + count;
+        if (!report_ || std::this_thread::get_id() != thread_) return;
+        if (done - reported_ < references_.size() / 100) return;
+        reported_ = done;
+        report_(static_cast<double>(done) / static_cast<double>(references_.size()));
     }
 
     // Puts the left side's references first and returns where the right side's begin; `end` if one
@@ -207,11 +217,16 @@ class Builder {
     std::size_t most_nodes_;
     BinaryNode* nodes_;  // [most_nodes_]; far fewer are made, and the others' memory is not touched
     std::atomic<std::uint32_t> next_node_ = 1;
+    const std::function<void(double)>& report_;
+    std::thread::id thread_ = std::this_thread::get_id();
+    std::atomic<std::size_t> done_ = 0;  // references in leaves
+    std::size_t reported_ = 0;
 };
 
 }  // namespace
 
-BinaryBvh build_binary_bvh(const Scene& scene, unsigned leaf_size) {
+BinaryBvh build_binary_bvh(const Scene& scene, unsigned leaf_size,
+                           const std::function<void(double)>& report) {
     std::vector<Reference> references;
     references.reserve(scene.triangle_count());
     for (std::size_t t = 0; t < scene.triangle_count(); ++t) {
@@ -227,7 +242,7 @@ BinaryBvh build_binary_bvh(const Scene& scene, unsigned leaf_size) {
         references.push_back(r);
     }
     if (references.empty()) return {};
-    return Builder(std::move(references), leaf_size).build();
+    return Builder(std::move(references), leaf_size, report).build();
 }
 
 }  // namespace manylight

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <glm/glm.hpp>
 #include <vector>
 
@@ -26,6 +27,8 @@ struct BinaryBvh {
 /// Construction of SAH-based Bounding Volume Hierarchies", 2007), in parallel. Leaves hold at most
 /// `leaf_size` triangles. Triangles without area are left out: no ray hits them. The result does
 /// not depend on the number of threads, but the order of nodes may.
-[[nodiscard]] BinaryBvh build_binary_bvh(const Scene& scene, unsigned leaf_size);
+/// `report` gets the share done now and then, on the calling thread.
+[[nodiscard]] BinaryBvh build_binary_bvh(const Scene& scene, unsigned leaf_size,
+                                         const std::function<void(double)>& report = {});
 
 }  // namespace manylight

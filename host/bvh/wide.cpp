@@ -106,8 +106,10 @@ class Collapser {
 
 }  // namespace
 
-WideBvh build_wide_bvh(const Scene& scene, unsigned width, unsigned block, float reach) {
-    const BinaryBvh binary = build_binary_bvh(scene, block);
+WideBvh build_wide_bvh(const Scene& scene, unsigned width, unsigned block, float reach,
+                       const std::function<void(double)>& report) {
+    const BinaryBvh binary = build_binary_bvh(
+        scene, block, report ? [&](double share) { report(0.8 * share); } : report);
     WideBvh wide;
     wide.width = width;
     wide.block = block;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <fmt/format.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -14,6 +15,7 @@
 #include "output/progress.hpp"
 #include "output/write_file.hpp"
 #include "scene/builtin/builtin.hpp"
+#include "scene/gltf_parse.hpp"
 #include "stages/gbuffer.hpp"
 #include "verify/verify.hpp"
 
@@ -103,6 +105,44 @@ WideBvh build(const LoadedScene& loaded, const BenchArguments& arguments, const 
     return build_wide_bvh(loaded.scene, arguments.bvh_width ? arguments.bvh_width : lanes,
                           arguments.bvh_block ? arguments.bvh_block : lanes,
                           reach_of(loaded.scene, loaded.camera));
+}
+
+// What loading and building a file takes beyond what must be: its parser alone and the BVH.
+void bench_loading(const SceneArguments& scene, const Device& device, json& out) {
+    std::vector<double> loads, builds_alone, parsers, ratios;
+    long peak = 0;  // KiB
+    for (unsigned i = 0; i < builds; ++i) {
+        const auto start = Clock::now();
+        {
+            const LoadedScene loaded = load(scene);
+            loads.push_back(seconds_since(start));
+            const WideBvh bvh = build_bvh(loaded, device);
+            builds_alone.push_back(seconds_since(start) - loads.back());
+        }
+        if (i == 0) {
+            rusage usage{};
+            getrusage(RUSAGE_SELF, &usage);
+            peak = usage.ru_maxrss;
+        }
+        const auto parse_start = Clock::now();
+        parse_alone(scene.file);
+        parsers.push_back(seconds_since(parse_start));
+        ratios.push_back((loads.back() + builds_alone.back()) /
+                         (parsers.back() + builds_alone.back()));
+    }
+    const double of_file = static_cast<double>(peak) * 1024 /
+                           static_cast<double>(std::filesystem::file_size(scene.file));
+    out["loading"] = {{"load_s", quartiles(loads).median},
+                      {"build_s", quartiles(builds_alone).median},
+                      {"parser_s", quartiles(parsers).median},
+                      {"ratio", quartiles(ratios).median},
+                      {"peak_bytes", peak * 1024},
+                      {"peak_over_file", of_file}};
+    fmt::print(
+        "loading {:.3f} s (tinygltf alone {:.3f} s), BVH {:.3f} s: {:.2f} times what tinygltf and "
+        "the BVH take; memory of the process {:.1f} MiB, {:.2f} times the file\n",
+        quartiles(loads).median, quartiles(parsers).median, quartiles(builds_alone).median,
+        quartiles(ratios).median, static_cast<double>(peak) / 1024, of_file);
 }
 
 // Builds both BVHs in turn; the last ones are kept.
@@ -237,6 +277,13 @@ void bench_stages(const LoadedScene& loaded, const Device& device, const BenchAr
     out["stages"]["shadow_mrays_per_s"] = shadow_rate;
 }
 
+void write_json(const std::string& path, const json& out) {
+    if (path.empty()) return;
+    const std::string text = out.dump(2, ' ', false, json::error_handler_t::replace) + "\n";
+    write_file(path, std::as_bytes(std::span(text)));
+    fmt::print("\nwrote {}\n", path);
+}
+
 }  // namespace
 
 int run_bench(const BenchArguments& arguments) {
@@ -258,13 +305,21 @@ int run_bench(const BenchArguments& arguments) {
             if (same_file(arguments.json, input))
                 throw InputError("--json {}: is the scene itself", arguments.json);
     }
+    if (!file && arguments.loading)
+        throw InputError("--loading: goes with a file, not with 'bench {}'", arguments.what);
     BenchArguments with_file = arguments;
     with_file.scene.file = arguments.what;
+    Device device = Device::open(arguments.scene.device, arguments.scene.threads);
+    json loading = json::object();
+    if (file) bench_loading(with_file.scene, device, loading);
+    if (arguments.loading) {
+        write_json(arguments.json, loading);
+        return 0;
+    }
     const LoadedScene loaded = file ? load(with_file.scene) : load_room(arguments);
     if (loaded.scene.lights.empty())
         throw InputError("{}: has no lights: there are no shadow rays to measure",
                          loaded.scene.file);
-    Device device = Device::open(arguments.scene.device, arguments.scene.threads);
     fmt::print("{}: {} triangles, {} lights, camera '{}', {} x {}\n{} ({})\n", loaded.scene.file,
                loaded.scene.triangle_count(), loaded.scene.lights.size(), loaded.view.name,
                loaded.width, loaded.height, device.info().name, device.info().platform);
@@ -278,13 +333,10 @@ int run_bench(const BenchArguments& arguments) {
                 {"device", device.info().name},
                 {"platform", device.info().platform},
                 {"rounds", arguments.rounds}};
+    out.update(loading);
     if (!stages) bench_traversal(loaded, device, arguments, out);
     if (!traversal) bench_stages(loaded, device, arguments, out);
-    if (!arguments.json.empty()) {
-        const std::string text = out.dump(2, ' ', false, json::error_handler_t::replace) + "\n";
-        write_file(arguments.json, std::as_bytes(std::span(text)));
-        fmt::print("\nwrote {}\n", arguments.json);
-    }
+    write_json(arguments.json, out);
     return 0;
 }
 

@@ -141,15 +141,13 @@ int run_chart(const ChartArguments& arguments) {
     const ChartOptions options = complete(arguments.options);
     SceneArguments scene = arguments.scene;
     if (scene.width == 0 && scene.height == 0) scene.height = default_height;
-    const LoadedScene loaded = load(scene);
+    const LoadedScene loaded = load(scene, options.quiet);
     if (loaded.scene.lights.empty())
         throw InputError("{}: has no lights: there is nothing to chart", loaded.scene.file);
     const double load_seconds = seconds_since(start);
     const Device device = Device::open(scene.device, scene.threads);
     const auto build_start = Clock::now();
-    const unsigned lanes = lanes_for(device.info());
-    const WideBvh bvh =
-        build_wide_bvh(loaded.scene, lanes, lanes, reach_of(loaded.scene, loaded.camera));
+    const WideBvh bvh = build_bvh(loaded, device, options.quiet);
     const double bvh_seconds = seconds_since(build_start);
     Renderer renderer(device, loaded.scene, bvh, loaded.camera, loaded.width, loaded.height,
                       arguments.memory);

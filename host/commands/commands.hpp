@@ -69,7 +69,8 @@ struct BuiltinArguments {
 };
 
 struct BenchArguments {
-    std::string what;  // traversal, stages, or a scene file for both
+    std::string what;      // traversal, stages, or a scene file for both and its loading
+    bool loading = false;  // of a file, alone
     SceneArguments scene;
     std::string mesh;
     std::string view;  // far (the default) or close
@@ -119,7 +120,12 @@ struct LoadedScene {
 };
 
 /// Loads a scene, makes its emitters lights and finds the camera; prints the file's warnings.
-[[nodiscard]] LoadedScene load(const SceneArguments& arguments);
+/// Shows its progress unless `quiet`.
+[[nodiscard]] LoadedScene load(const SceneArguments& arguments, bool quiet = false);
+
+/// The BVH that suits a device. Shows its progress unless `quiet`.
+[[nodiscard]] WideBvh build_bvh(const LoadedScene& loaded, const Device& device,
+                                bool quiet = false);
 
 /// Estimates the `count` lights that give the image most (see find_top_lights) and, unless `quiet`,
 /// prints them as a table. Returns the same for --stats.

@@ -295,9 +295,7 @@ int run_inspect(const InspectArguments& arguments) {
     options.width = loaded.width;
     options.height = loaded.height;
     Device device = Device::open(arguments.scene.device, arguments.scene.threads);
-    const unsigned lanes = lanes_for(device.info());
-    const WideBvh bvh =
-        build_wide_bvh(loaded.scene, lanes, lanes, reach_of(loaded.scene, loaded.camera));
+    const WideBvh bvh = build_bvh(loaded, device);
     Frame frame(device, loaded.scene, bvh, loaded.camera, options);
     if (frame.plan().batches > 1) {
         const std::size_t most = options.memory > 0 ? options.memory : frame.plan().total_bytes();

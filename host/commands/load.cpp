@@ -5,7 +5,9 @@
 
 #include "commands/commands.hpp"
 #include "error.hpp"
+#include "output/progress.hpp"
 #include "scene/gltf.hpp"
+#include "stages/device_scene.hpp"
 
 namespace manylight {
 namespace {
@@ -28,11 +30,22 @@ void choose_size(LoadedScene& out, const SceneArguments& arguments, double aspec
 
 }  // namespace
 
-LoadedScene load(const SceneArguments& arguments) {
+WideBvh build_bvh(const LoadedScene& loaded, const Device& device, bool quiet) {
+    Progress progress("building", quiet);
+    const unsigned lanes = lanes_for(device.info());
+    return build_wide_bvh(loaded.scene, lanes, lanes, reach_of(loaded.scene, loaded.camera),
+                          [&](double share) { progress.set(share); });
+}
+
+LoadedScene load(const SceneArguments& arguments, bool quiet) {
     LoadedScene out;
     Scene& scene = out.scene;
-    scene = load_scene(arguments.file,
-                       {.seconds = arguments.seconds, .lamp_scale = arguments.lamp_scale});
+    {
+        Progress progress("loading", quiet);
+        scene = load_scene(arguments.file, {.seconds = arguments.seconds,
+                                            .lamp_scale = arguments.lamp_scale,
+                                            .report = [&](double share) { progress.set(share); }});
+    }
     for (const std::string& warning : scene.warnings) fmt::print(stderr, "warning: {}\n", warning);
     out.emitter_points = arguments.emitter_points.value_or(scene.emitter_points.value_or(0));
     add_emitters(scene, out.emitter_points);

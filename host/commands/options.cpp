@@ -323,12 +323,15 @@ void add_bench(CLI::App& app, std::function<int()>& run) {
     auto arguments = std::make_shared<BenchArguments>();
     CLI::App* command =
         app.add_subcommand("bench", "measure traversal, beside Embree, and the stages of a frame");
-    command->add_option("what", arguments->what, "traversal, stages, or a scene file for both")
+    command
+        ->add_option("what", arguments->what,
+                     "traversal, stages, or a scene file for both and its loading")
         ->required();
     command->add_option("--mesh", arguments->mesh,
                         "traversal, stages: glTF file whose mesh stands in the dragon's room");
     command->add_option("--view", arguments->view, "traversal, stages: far (the default) or close")
         ->check(CLI::IsMember({"far", "close"}));
+    command->add_flag("--loading", arguments->loading, "of a file: how it loads, and no more");
     command->add_option("--json", arguments->json, "file for all figures");
     command->add_option("--rounds", arguments->rounds, "rounds in which all take turns")
         ->check(whole(1, 1000))
@@ -347,7 +350,8 @@ void add_bench(CLI::App& app, std::function<int()>& run) {
         "reference.\n\nExamples:\n"
         "  manylight bench traversal --view close\n"
         "  manylight bench traversal --mesh dragon.glb --json traversal.json\n"
-        "  manylight bench scene.glb --device intel\n");
+        "  manylight bench scene.glb --device intel\n"
+        "  manylight bench large.glb --loading\n");
     command->callback([&run, arguments] {
         (void)find_sampler(arguments->sampler);
         run = [arguments] { return run_bench(*arguments); };

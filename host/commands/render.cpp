@@ -247,7 +247,7 @@ int run_render(const RenderArguments& arguments) {
         for (const char* name : {"cluster", "representative"}) options.aovs.emplace_back(name);
     }
 
-    const LoadedScene loaded = load(arguments.scene);
+    const LoadedScene loaded = load(arguments.scene, arguments.quiet);
     const double load_seconds = seconds_since(start);
     options.sampler = arguments.sampler;
     if (arguments.sampler == "auto") {
@@ -260,9 +260,7 @@ int run_render(const RenderArguments& arguments) {
     options.height = loaded.height;
     Device device = Device::open(arguments.scene.device, arguments.scene.threads);
     const auto build_start = Clock::now();
-    const unsigned lanes = lanes_for(device.info());
-    const WideBvh bvh =
-        build_wide_bvh(loaded.scene, lanes, lanes, reach_of(loaded.scene, loaded.camera));
+    const WideBvh bvh = build_bvh(loaded, device, arguments.quiet);
     const double build_seconds = seconds_since(build_start);
     if (arguments.seconds > 0) options.deadline = deadline_of(arguments, images, loaded);
     Frame frame(device, loaded.scene, bvh, loaded.camera, options);

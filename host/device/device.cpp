@@ -105,14 +105,20 @@ Device Device::open(std::string_view selector, unsigned threads) {
 
 const DeviceInfo& Device::info() const { return context_->info; }
 
-DeviceMemory Device::allocate_bytes(std::size_t bytes) {
+// `shared`: the values, which stay where they are.
+DeviceMemory Device::allocate_bytes(std::size_t bytes, const void* shared) {
     DeviceMemory memory;
     memory.allocation_ = std::make_shared<DeviceMemory::Allocation>();
     DeviceMemory::Allocation& allocation = *memory.allocation_;
     allocation.context = context_;
-    try {  // OpenCL has no empty buffers
-        allocation.buffer = cl::Buffer(context_->context, CL_MEM_READ_WRITE,
-                                       std::max<std::size_t>(bytes, sizeof(cl_float16)));
+    try {
+        if (shared != nullptr && bytes > 0)
+            allocation.buffer =
+                cl::Buffer(context_->context, CL_MEM_READ_ONLY | CL_MEM_USE_HOST_PTR, bytes,
+                           const_cast<void*>(shared));
+        else  // OpenCL has no empty buffers
+            allocation.buffer = cl::Buffer(context_->context, CL_MEM_READ_WRITE,
+                                           std::max<std::size_t>(bytes, sizeof(cl_float16)));
     } catch (const cl::Error& error) {
         throw RuntimeError("{}: cannot allocate {} bytes: {}", context_->info.name, bytes,
                            describe(error));

@@ -141,6 +141,14 @@ class Device {
         return upload(std::span<const T>(values));
     }
 
+    /// The same without a copy where the device works on the host's memory: `values` live longer,
+    /// are not changed and aligned as kernels take them to be. Kernels only read it.
+    template <class T, class Allocator>
+    [[nodiscard]] Buffer<T> share(const std::vector<T, Allocator>& values) {
+        if (info().is_gpu) return upload(std::span<const T>(values));
+        return Buffer<T>(allocate_bytes(values.size() * sizeof(T), values.data()));
+    }
+
     /// A kernel of kernels/`file`, built with `defines` for this device; its times count for
     /// `stage`. Programs are built once. Throws RuntimeError with the device, options and log.
     [[nodiscard]] Kernel kernel(std::string_view file, const std::string& name,
@@ -161,7 +169,7 @@ class Device {
     struct Context;  // OpenCL's objects
 
   private:
-    [[nodiscard]] DeviceMemory allocate_bytes(std::size_t bytes);
+    [[nodiscard]] DeviceMemory allocate_bytes(std::size_t bytes, const void* shared = nullptr);
     std::shared_ptr<Context> context_;
 };
 

@@ -16,9 +16,9 @@ constexpr std::size_t items_per_batch = std::size_t{1} << 16;  // whose rays the
 constexpr std::size_t most_cut_lights = std::size_t{1} << 22;  // draws have 23 bits for a node
 constexpr std::size_t default_budget = std::size_t{2} << 30;
 
-template <class T>
-std::size_t bytes_of(const std::vector<T>& values) {
-    return values.size() * sizeof(T);
+template <class Vector>
+std::size_t bytes_of(const Vector& values) {
+    return values.size() * sizeof(values[0]);
 }
 
 std::string mebibytes(std::size_t bytes) {

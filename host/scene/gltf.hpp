@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <set>
@@ -18,6 +19,7 @@ struct LoadOptions {
     std::optional<double> seconds = {};  // the moment of the first animation; none: all at rest
     double lamp_scale = 1;               // of punctual lights' intensities
     std::size_t most_bytes = 0;          // that triangles may need; 0: what the machine has
+    std::function<void(double)> report = {};  // gets the share done now and then
 };
 
 /// Loads a .gltf or .glb file. Throws InputError naming the file, the object and the value for

@@ -59,7 +59,7 @@ class Loader {
         for (const int node : nodes_) visit_node(node);
         find_alpha(scene_);
         note_what_is_not_rendered();
-        if (!has_normals_) scene_.vertex_normals.clear();
+        if (!has_normals_) scene_.vertex_normals = {};
         return std::move(scene_);
     }
 
@@ -182,7 +182,7 @@ class Loader {
 
     // Refuses scenes whose triangles, instances counted one by one, cannot fit: a file of a
     // kilobyte may ask for any number of them.
-    void check_memory(std::size_t most_bytes) const {
+    void check_memory(std::size_t most_bytes) {
         double vertices = 0;
         double triangles = 0;
         for (const int node : nodes_) {
@@ -199,6 +199,7 @@ class Loader {
                              static_cast<double>(is_list(primitive.mode) ? corners / 3 : corners);
             }
         }
+        whole_ = vertices + triangles;
         constexpr double gib = 1 << 30;
         const double bytes = vertices * vertex_bytes + triangles * triangle_bytes;
         if (bytes > static_cast<double>(most_bytes))
@@ -206,6 +207,13 @@ class Loader {
                 "{}: its {:.0f} triangles, instances counted one by one, need at least {:.1f} GiB, "
                 "and there are {:.1f} GiB of memory",
                 scene_.file, triangles, bytes / gib, static_cast<double>(most_bytes) / gib);
+    }
+
+    // One more vertex or triangle is there.
+    void note_done() {
+        constexpr std::size_t between = 1 << 18;
+        if (++done_ % between == 0 && options_.report)
+            options_.report(static_cast<double>(done_) / whole_);
     }
 
     void visit_node(int index) {
@@ -341,6 +349,7 @@ class Loader {
         const bool mirrored = glm::determinant(glm::dmat3(m)) < 0;  // turns the winding round
         glm::dmat3 to_normal = glm::transpose(glm::inverse(glm::dmat3(m)));
         for (std::size_t v = 0; v < count; ++v) {
+            note_done();
             if (!moved.empty()) {
                 m = transform(v);
                 to_normal = glm::transpose(glm::inverse(glm::dmat3(m)));
@@ -496,6 +505,7 @@ class Loader {
                                   : corners.size() >= 3 ? corners.size() - 2
                                                         : 0;
         for (std::size_t t = 0; t < count; ++t) {
+            note_done();
             std::size_t c[3] = {3 * t, 3 * t + 1, 3 * t + 2};
             if (mode == TINYGLTF_MODE_TRIANGLE_STRIP) {
                 c[0] = t, c[1] = t + 1 + t % 2, c[2] = t + 2 - t % 2;
@@ -563,6 +573,8 @@ class Loader {
     Scene scene_;
     std::vector<int> nodes_;
     std::vector<unsigned> coordinate_sets_;  // [set of Scene::coordinates] n of TEXCOORD_n
+    double whole_ = 0;                       // vertices and triangles, instances counted one by one
+    std::size_t done_ = 0;                   // of these
     bool has_normals_ = false;
     std::size_t lines_and_points_ = 0;
     std::size_t without_position_ = 0;

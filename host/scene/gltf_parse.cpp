@@ -65,12 +65,15 @@ std::vector<unsigned char> without_refused(const GltfFile& file) {
     return out;
 }
 
+bool skip_image(tinygltf::Image*, const int, std::string*, std::string*, int, int,
+                const unsigned char*, int, void*) {
+    return true;
+}
+
 }  // namespace
 
 tinygltf::Model parse_gltf(const GltfFile& file) {
     tinygltf::TinyGLTF parser;
-    const auto skip_image = [](tinygltf::Image*, const int, std::string*, std::string*, int, int,
-                               const unsigned char*, int, void*) { return true; };
     parser.SetImageLoader(skip_image, nullptr);
     tinygltf::Model model;
     std::string error;
@@ -96,6 +99,18 @@ tinygltf::Model parse_gltf(const GltfFile& file) {
     for (std::size_t i = 0; i < model.accessors.size(); ++i)
         if (lacks_view(file.json["accessors"][i])) model.accessors[i].bufferView = -1;
     return model;
+}
+
+void parse_alone(const std::string& path) {
+    tinygltf::TinyGLTF parser;
+    parser.SetImageLoader(skip_image, nullptr);
+    tinygltf::Model model;
+    std::string error;
+    std::string warning;
+    const bool parsed = path.ends_with(".glb")
+                            ? parser.LoadBinaryFromFile(&model, &error, &warning, path)
+                            : parser.LoadASCIIFromFile(&model, &error, &warning, path);
+    if (!parsed) throw InputError("{}: {}", path, error);
 }
 
 }  // namespace manylight

@@ -11,4 +11,8 @@ namespace manylight {
 /// The file as tinygltf's model, buffers filled, images left out; call check_gltf() first.
 [[nodiscard]] tinygltf::Model parse_gltf(const GltfFile& file);
 
+/// Has the library read and parse a .glb or .gltf file, and nothing else: what loading is measured
+/// against. Throws InputError.
+void parse_alone(const std::string& path);
+
 }  // namespace manylight

@@ -7,11 +7,6 @@
 namespace manylight {
 namespace {
 
-std::span<const float> flat(const std::vector<glm::vec3>& vectors) {
-    static_assert(sizeof(glm::vec3) == 3 * sizeof(float));
-    return {vectors.empty() ? nullptr : &vectors[0].x, 3 * vectors.size()};
-}
-
 Defines kind_defines(const Features& features) {
     Defines defines;
 #define DEFINE_KIND(name, NAME, value) defines["HAS_" #NAME] = features.kinds[value];
@@ -33,7 +28,7 @@ void set_textures(Device& device, const Scene& scene, Arguments& arguments) {
     for (std::size_t set = 0; set < scene.coordinates.size(); ++set)
         coordinates.upload(scene.coordinates[set], set * vertices);
     const Buffer<Texture> textures = device.upload(scene.textures);
-    const Buffer<std::uint32_t> texels = device.upload(scene.texels);
+    const Buffer<std::uint32_t> texels = device.share(scene.texels);
     arguments.set("maps", device.upload(scene.maps))
         .set("textures", textures)
         .set("texels", texels)
@@ -66,16 +61,15 @@ DeviceScene upload_scene(Device& device, const Scene& scene, const WideBvh& bvh,
         device.allocate<Material>(scene.materials.size() + (out.varies_materials ? points : 0));
     out.materials.upload(scene.materials);
     out.arguments.set("camera", camera)
-        .set("bvh_nodes", device.upload(bvh.nodes))
-        .set("bvh_blocks", device.upload(bvh.blocks))
-        .set("vertices", device.upload(flat(scene.vertices)))
-        .set("indices", device.upload(scene.indices))
-        .set("triangle_materials", device.upload(scene.triangle_materials))
+        .set("bvh_nodes", device.share(bvh.nodes))
+        .set("bvh_blocks", device.share(bvh.blocks))
+        .set("vertices", device.share(scene.vertices))
+        .set("indices", device.share(scene.indices))
+        .set("triangle_materials", device.share(scene.triangle_materials))
         .set("materials", out.materials)
         .set("lights", device.upload(tree ? tree->lights : scene.lights))
         .set("light_count", out.light_count);
-    if (features.smooth)
-        out.arguments.set("vertex_normals", device.upload(flat(scene.vertex_normals)));
+    if (features.smooth) out.arguments.set("vertex_normals", device.share(scene.vertex_normals));
     if (features.textures || features.alpha) set_textures(device, scene, out.arguments);
     if (features.tangents) out.arguments.set("tangents", device.upload(scene.tangents));
     if (features.colors) out.arguments.set("colors", device.upload(scene.colors));
