@@ -231,6 +231,19 @@ class CommandTest(unittest.TestCase):
                 self.refuse("render", "x.png", *arguments, words=words)
                 self.assertEqual(self.files(), ["x.png"])
 
+    def test_files_of_the_scene_are_no_outputs(self):
+        document = {"asset": {"version": "2.0"}, "images": [{"uri": "house.png"}]}
+        (self.folder / "house.gltf").write_text(json.dumps(document))
+        (self.folder / "house.png").write_bytes(b"the scene's texture")
+        run = self.run_program("render", "house.gltf", "--height", 16, code=2)
+        self.assertIn("error: --output house.png: is a file of the scene", run.stderr)
+        self.assertEqual((self.folder / "house.png").read_bytes(), b"the scene's texture")
+
+    def test_what_a_killed_process_left_is_in_nobodys_way(self):
+        script = f'touch .x.exr.$$-0.part; exec "{PROGRAM}" render "{self.cornell}" --height 8 -q -o x.exr'
+        subprocess.run(["bash", "-c", script], cwd=self.folder, check=True)
+        self.assertIn("x.exr", self.files())
+
     def test_layers_need_an_exr(self):
         self.refuse("render", self.cornell, "-o", "a.png", "--aov", "depth", words=["--aov", ".exr"])
 
@@ -550,6 +563,16 @@ class CommandTest(unittest.TestCase):
         run = self.run_program("compare", "more.exr", "whole.exr", "--json")
         self.assertEqual(json.loads(run.stdout)["rmse"], 0)
         self.assertNotEqual((self.folder / "state").read_bytes(), before)
+        # A stop by the error saves at the end, and rays count from the start.
+        early = [*arguments, "--target-error", "1", "--spp", "64", "--sampler", "contribution",
+                 "--checkpoint", "early", "--stats", "early.json"]
+        self.run_program(*early)
+        self.assertIn("early", self.files())
+        rays = json.loads((self.folder / "early.json").read_text())["rays"]
+        self.run_program(*early, "--resume")
+        again = json.loads((self.folder / "early.json").read_text())
+        self.assertEqual(again["rays"], rays)
+        self.assertEqual(again["later_light_samples"], 4)
 
     def test_interrupts_leave_no_litter(self):
         run = subprocess.Popen([PROGRAM, "render", self.cornell, "--height", "64", "-q", "--spp",

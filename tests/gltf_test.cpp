@@ -487,6 +487,12 @@ TEST(gltf, draco) {
             for (std::size_t v = 0; v < scene.vertices.size(); ++v)
                 EXPECT_NEAR(scene.colors[v].x * 255, 2 * scene.vertices[v].x + scene.vertices[v].y,
                             1e-3);
+            json unsuited = file.document;
+            std::swap(unsuited, file.document);
+            file.document["accessors"][first + 2] = {
+                {"componentType", 5126}, {"type", "VEC3"}, {"count", 6 * squares}};
+            EXPECT_THROW((void)file.load(), InputError);
+            std::swap(unsuited, file.document);
             // Numbers that the file does not announce.
             file.document["accessors"][first + 2]["count"] = 6 * squares - 3;
             EXPECT_THROW((void)file.load(), InputError);
@@ -570,6 +576,23 @@ TEST(gltf, instances_of_a_mesh) {
     expect_near(triangle(scene, 1)[0], {105, 0, 0});
     expect_near(triangle(scene, 1)[1], {105, 2, 0});  // x, scaled by 2, turned to y
     EXPECT_TRUE(scene.warnings.empty());
+    // Attributes of its own say nothing of places.
+    json& instances = file.document["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"];
+    instances["attributes"] = {{"_ID", instances["attributes"]["SCALE"]}};
+    EXPECT_EQ(file.load().triangle_count(), 1u);
+}
+
+TEST(gltf, files_with_a_plus) {
+    GltfTest file;
+    const std::string old = file.document["buffers"][0]["uri"];
+    const std::string name = "a+b " + old;
+    std::filesystem::copy_file(test::temporary(old), test::temporary(name),
+                               std::filesystem::copy_options::overwrite_existing);
+    file.document["buffers"][0]["uri"] = name;
+    const Scene scene = file.load();
+    expect_near(triangle(scene, 0)[2], {0, 1, 0});
+    ASSERT_EQ(scene.files.size(), 1u);
+    EXPECT_TRUE(scene.files[0].ends_with(name));
 }
 
 // The node's weights, or else the mesh's.

@@ -40,6 +40,9 @@ IMAGES = {
     "cut off.png": TEXTURE[:45],
     "empty.png": b"",
     "text.png": b"This is no image.",
+    "exif.webp": base64.b64decode(
+        "UklGRnYAAABXRUJQVlA4WAoAAAAIAAAAAQAAAQAAVlA4IBoAAAAwAQCdASoCAAIAAAAAJaQAA3AA/v/fbtQAAEVYSUYE"
+        "AAAASUlJSVhYSUkqAAAA/38AAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAA"),
     "rows missing.png": png(900, 900, b"\0\xff\0\0"),
     "wide.png": png(60000, 2, b"\0\xff\0\0"),
     "huge.png": png(16000, 16000, bytes(1000000)),
@@ -397,6 +400,19 @@ CHANGES = {
         lambda d: d["nodes"][0].update(extensions={"EXT_mesh_gpu_instancing": {
             "attributes": {"TRANSLATION": 0, "SCALE": 3}}}) or d["accessors"].append(
                 dict(d["accessors"][0], count=3)), ["EXT_mesh_gpu_instancing.SCALE", "3 values for 4"]),
+    "image in a compressed view": (lambda d: (compressed()(d), put(["images", 0], {
+        "bufferView": 0, "mimeType": "image/png"})(d)), ["images[0].bufferView", "compressed"]),
+    "image of a short EXIF": (put(["images", 0, "uri"], "exif.webp"), ["images[0]", "EXIF", "4 bytes"]),
+    "animated image": (put(["images", 0, "uri"], "data:image/webp;base64," + base64.b64encode(
+        b"RIFF\x12\0\0\0WEBPVP8X\x0a\0\0\0\2" + bytes(9)).decode()), ["images[0]", "animation"]),
+    "sparse offset beyond int": (put(POSITION + ["sparse"], {
+        "count": 1, "indices": {"bufferView": 0, "byteOffset": 2**31, "componentType": 5123},
+        "values": {"bufferView": 0}}), ["byteOffset", str(2**31), "is more than"]),
+    "a file twice": (lambda d: d.update(buffers=d["buffers"] + 2 * [
+        {"byteLength": 4, "uri": "texture.png"}]), ["buffers[2].uri", "texture.png"]),
+    "morph targets beyond all time": (lambda d: (d["accessors"].append({
+        "componentType": 5126, "type": "VEC3", "count": 1 << 24}), put(POSITION, d["accessors"][-1])(d),
+        put(PRIMITIVE + ["targets"], [{"POSITION": 0}] * 1000)(d)), ["morph targets", "steps"]),
     "instances beyond memory": (more_instances_than_memory, ["triangles", "GiB of memory"]),
     "accessor min of two": (put(POSITION + ["min"], [0, 0]), ["accessors[0].min", "2"]),
     "view buffer beyond": (put(VIEW + ["buffer"], 1), ["bufferViews[0].buffer", "1"]),

@@ -123,6 +123,9 @@ struct LoadedScene {
 /// Shows its progress unless `quiet`.
 [[nodiscard]] LoadedScene load(const SceneArguments& arguments, bool quiet = false);
 
+/// Throws InputError if a file to write is one that the scene names.
+void refuse_scene_file(const Scene& scene, const std::string& option, const std::string& path);
+
 /// The BVH that suits a device. Shows its progress unless `quiet`.
 [[nodiscard]] WideBvh build_bvh(const LoadedScene& loaded, const Device& device,
                                 bool quiet = false);

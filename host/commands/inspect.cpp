@@ -286,6 +286,7 @@ int run_inspect(const InspectArguments& arguments) {
         file = std::filesystem::path(arguments.scene.file).stem().string() + "-pixel.png";
     check_files(arguments, file);
     const LoadedScene loaded = load(arguments.scene);
+    refuse_scene_file(loaded.scene, "--output", file);
     const glm::uvec2 pixel(arguments.x, arguments.y);
     if (pixel.x >= loaded.width || pixel.y >= loaded.height)
         throw InputError("{}: --pixel {},{}: is outside the image of {} x {} pixels",

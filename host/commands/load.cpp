@@ -6,6 +6,7 @@
 #include "commands/commands.hpp"
 #include "error.hpp"
 #include "output/progress.hpp"
+#include "output/write_file.hpp"
 #include "scene/gltf.hpp"
 #include "stages/device_scene.hpp"
 
@@ -29,6 +30,13 @@ void choose_size(LoadedScene& out, const SceneArguments& arguments, double aspec
 }
 
 }  // namespace
+
+void refuse_scene_file(const Scene& scene, const std::string& option, const std::string& path) {
+    for (const std::string& file : scene.files)
+        if (same_file(path, file))
+            throw InputError("{} {}: is a file of the scene; name another with {}", option, path,
+                             option);
+}
 
 WideBvh build_bvh(const LoadedScene& loaded, const Device& device, bool quiet) {
     Progress progress("building", quiet);

@@ -139,7 +139,7 @@ json make_stats(json parameters, const LoadedScene& loaded, const Plan& plan,
     const std::map<std::string, double> stages = device.stage_seconds();
     stats["stage_seconds"] = stages;
     const auto shadows = stages.find("shadows");
-    if (shadows != stages.end() && shadows->second > 0)
+    if (shadows != stages.end() && shadows->second > 0 && !result.is_resumed)
         stats["shadow_mrays_per_s"] =
             static_cast<double>(result.shadow_rays) / shadows->second / 1e6;
     return stats;
@@ -248,6 +248,8 @@ int run_render(const RenderArguments& arguments) {
     }
 
     const LoadedScene loaded = load(arguments.scene, arguments.quiet);
+    for (const auto& [option, path] : files_of(arguments, images))
+        refuse_scene_file(loaded.scene, option, path);
     const double load_seconds = seconds_since(start);
     options.sampler = arguments.sampler;
     if (arguments.sampler == "auto") {
@@ -281,7 +283,7 @@ int run_render(const RenderArguments& arguments) {
     if (!arguments.quiet) {
         print_summary(options, result, seconds_since(start));
         for (const auto& [option, path] : files_of(arguments, images))
-            fmt::print("wrote {}\n", path);
+            if (fs::exists(path)) fmt::print("wrote {}\n", path);
     }
     return 0;
 }

@@ -81,13 +81,18 @@ void write_file(const std::string& path, std::span<const std::byte> bytes) {
     std::error_code error;
     const fs::path target =
         fs::is_symlink(path, error) ? fs::weakly_canonical(path, error) : fs::path(path);
-    const fs::path aside =
-        target.parent_path() / fmt::format(".{}.{}.part", target.filename().string(), getpid());
     handle_signals();
-    has_part = 0;
-    std::strncpy(part_name, aside.c_str(), sizeof(part_name) - 1);
-    has_part = aside.native().size() < sizeof(part_name) ? 1 : 0;
-    const int file = open(aside.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    fs::path aside;
+    int file = -1;
+    // A process that was killed may have left its file, and this one may have its number.
+    for (int i = 0; i < 100 && file < 0 && (i == 0 || errno == EEXIST); ++i) {
+        aside = target.parent_path() /
+                fmt::format(".{}.{}-{}.part", target.filename().string(), getpid(), i);
+        has_part = 0;
+        std::strncpy(part_name, aside.c_str(), sizeof(part_name) - 1);
+        file = open(aside.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+        has_part = file >= 0 && aside.native().size() < sizeof(part_name) ? 1 : 0;
+    }
     if (file < 0) {
         has_part = 0;
         throw RuntimeError("{}: cannot be written: {}", path, std::strerror(errno));

@@ -174,7 +174,10 @@ void Frame::render_to_error(Progress& progress) {
         result_.error = estimate_error();
         const double error = result_.error->relmse;
         const bool late = options_.deadline && Clock::now() >= *options_.deadline;
-        if (error <= options_.target_error || end >= options_.spp || late) return;
+        if (error <= options_.target_error || end >= options_.spp || late) {
+            if (saving_.save && end < options_.spp) save(plan_.batches - 1, end);
+            return;
+        }
         for (; counted < end; ++counted) weight += weight_of(counted);
         // Errors fall as the inverse of the weight.
         const double needed = weight * 1.02 * error / options_.target_error;
@@ -213,7 +216,8 @@ void Frame::visit_all(uint end, double shown, double share, Progress& progress) 
         if (plan_.centres && visit.fresh) {
             Stopwatch watch(result_.prepare_seconds, device_);
             stages_->gbuffer.trace(visit.batch, {}, stages_->centres, stages_->centres_first);
-            if (options_.jitters()) result_.primary_rays += pixel_count(visit.batch);
+            if (options_.jitters() && visit.state == nullptr)  // which has counted them
+                result_.primary_rays += pixel_count(visit.batch);
             if (plan_.clusters) cluster(visit, progress);
             if (!layers_kept_[i]) keep_aovs(visit.batch);
             layers_kept_[i] = true;
@@ -254,7 +258,8 @@ void Frame::cluster(const Visit& visit, Progress& progress) {
         report(progress, visit, std::min(done, cluster_work(visit.batch)));
     });
     clustering.normalise(mixture_of(sampler_, scene_.lights));
-    for (const RowSum& total : clustering.totals()) cluster_rays_ += total.facing_count;
+    if (visit.state == nullptr)  // which has counted them
+        for (const RowSum& total : clustering.totals()) cluster_rays_ += total.facing_count;
     if (layers_kept_[visit.number]) return;
     clusters_before_ = result_.clusters;
     for (const uint split : clustering.split()) result_.clusters += split == 0;
@@ -311,7 +316,6 @@ void Frame::sample(const Visit& visit, Progress& progress) {
             work += static_cast<double>(samples);
             report(progress, visit, work);
         };
-        result_.later_light_samples = count;
         done_[visit.number] = i + 1;
         if (s.adaptive && count > 0) {
             if (i == first && visit.state != nullptr)
@@ -362,6 +366,7 @@ void Frame::save(unsigned batch, uint end) {
     state.put("end", end);
     state.put("done", std::span<const uint>(done_));
     state.put("cluster_rays", std::uint64_t{cluster_rays_});
+    state.put("primary_rays", std::uint64_t{result_.primary_rays});
     state.put("sums", s.image.sums);
     state.put("residuals", s.image.residuals);
     state.put("weights", s.image.weights);
@@ -380,6 +385,8 @@ void Frame::resume(const FrameState& state) {
     resumed_end_ = state.get<uint>("end");
     done_ = state.get<uint>("done", plan_.batches);
     cluster_rays_ = state.get<std::uint64_t>("cluster_rays");
+    result_.primary_rays = state.get<std::uint64_t>("primary_rays");
+    result_.is_resumed = true;
     state.restore("sums", s.image.sums);
     state.restore("residuals", s.image.residuals);
     state.restore("weights", s.image.weights);
@@ -416,6 +423,7 @@ void Frame::keep_image() {
     result_.shadow_rays = cluster_rays_ + static_cast<std::size_t>(rays);
     result_.spp = samples / static_cast<double>(sums.size());
     result_.light_samples = samples_of(0);
+    result_.later_light_samples = samples_of(std::max(std::ranges::max(done_), 1u) - 1);
 }
 
 }  // namespace manylight

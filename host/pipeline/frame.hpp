@@ -22,6 +22,7 @@ struct FrameResult {
     std::vector<std::pair<std::string, Image>> aovs;  // in the order of all_aovs()
     std::size_t clusters = 0;
     std::size_t primary_rays = 0;
+    bool is_resumed = false;  // rays count from the first run's start, stages' seconds do not
     std::size_t shadow_rays = 0;
     uint light_samples = 0;              // of the first pixel sample
     uint later_light_samples = 0;        // of the last one

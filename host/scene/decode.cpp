@@ -106,6 +106,25 @@ std::vector<T> read(OIIO::ImageInput& input, const std::string& where, T one) {
     return spread(texels, channels, one);
 }
 
+// OpenImageIO 2.4 reads beyond an EXIF chunk of less than 6 bytes, and leaves texels of an
+// animation's frame that is smaller than its canvas undefined. Source: the WebP container
+// specification.
+void check_webp(std::span<const unsigned char> bytes, const std::string& where) {
+    const auto word = [&](std::size_t at) {
+        return bytes[at] | bytes[at + 1] << 8 | bytes[at + 2] << 16 |
+               static_cast<std::uint32_t>(bytes[at + 3]) << 24;
+    };
+    for (std::size_t at = 12; at + 8 <= bytes.size();) {
+        const std::string_view name(reinterpret_cast<const char*>(&bytes[at]), 4);
+        const std::size_t length = word(at + 4);
+        if (name == "EXIF" && length < 6)
+            throw InputError("{}: its EXIF chunk of {} bytes is none", where, length);
+        if (name == "VP8X" && at + 8 < bytes.size() && (bytes[at + 8] & 2) != 0)
+            throw InputError("{}: it is an animation, which no texture is", where);
+        at += 8 + length + length % 2;
+    }
+}
+
 }  // namespace
 
 DecodedImage decode_image(std::span<const unsigned char> bytes, const std::string& where) {
@@ -113,6 +132,7 @@ DecodedImage decode_image(std::span<const unsigned char> bytes, const std::strin
     if (name.empty())
         throw InputError("{}: its {} bytes are no PNG, JPEG, WebP or OpenEXR image", where,
                          bytes.size());
+    if (name.ends_with(".webp")) check_webp(bytes, where);
     OIIO::Filesystem::IOMemReader reader(bytes.data(), bytes.size());
     OIIO::Filesystem::IOProxy* proxy = &reader;
     const NoStandardError quiet;

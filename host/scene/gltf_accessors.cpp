@@ -163,6 +163,9 @@ Accessors::Elements Accessors::elements(int index, const std::string& where) {
     Elements in{nullptr, bytes, accessor.count, {}};
     const auto provided = provided_.find(index);
     if (provided != provided_.end()) {
+        if (provided->second.size() != in.count * bytes)
+            throw InputError("{}: {}: accessor {} is both indices and an attribute", file_.path,
+                             where, index);
         in.data = provided->second.data();
         return in;
     }

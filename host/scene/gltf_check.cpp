@@ -23,6 +23,7 @@ class Checker {
         extensions();
         each("buffers", &Checker::buffer);
         each("bufferViews", &Checker::buffer_view);
+        find_draco_accessors();
         each("accessors", &Checker::accessor);
         each("images", &Checker::image);
         each("textures", &Checker::texture);
@@ -121,9 +122,14 @@ class Checker {
     void buffer(const JsonValue& buffer, std::size_t i) {
         if (buffer["byteLength"].integer() == 0) buffer["byteLength"].refuse("0 is no length");
         if (is_fallback_buffer(file_.json["buffers"][i])) return;
-        if (buffer.has("uri"))
+        stored_ += buffer["byteLength"].integer();
+        if (buffer.has("uri")) {
             uri(buffer["uri"], true);
-        else if (!file_.is_binary || i != 0)
+            const std::string text = buffer["uri"].string();
+            if (!text.starts_with("data:") && !buffer_files_.insert(text).second)
+                buffer["uri"].refuse("{} is another buffer's file too", buffer["uri"].shown());
+        }
+        if (!buffer.has("uri") && (!file_.is_binary || i != 0))
             buffer.refuse("'uri' is missing (only the first buffer of a .glb has none)");
     }
 
@@ -195,11 +201,7 @@ class Checker {
     }
 
     [[nodiscard]] std::uint64_t most_decompressed() const {
-        std::uint64_t stored = 0;
-        for (std::size_t i = 0; i < count("buffers"); ++i)
-            if (!is_fallback_buffer(file_.json["buffers"][i]))
-                stored += root_["buffers"].at(i)["byteLength"].integer();
-        return 16 * stored + (std::uint64_t{1} << 28);
+        return 16 * stored_ + (std::uint64_t{1} << 28);
     }
 
     static std::size_t component_bytes(const JsonValue& type) {
@@ -218,7 +220,7 @@ class Checker {
         }
     }
 
-    void accessor(const JsonValue& accessor, std::size_t) {
+    void accessor(const JsonValue& accessor, std::size_t i) {
         const std::string type =
             accessor["type"].one_of({"SCALAR", "VEC2", "VEC3", "VEC4", "MAT2", "MAT3", "MAT4"});
         const std::size_t component = component_bytes(accessor["componentType"]);
@@ -234,7 +236,7 @@ class Checker {
         if (accessor.has("normalized")) accessor["normalized"].boolean();
         if (accessor.has("sparse")) sparse(accessor, component * components);
         if (!accessor.has("bufferView")) {
-            if (elements > most_zeros)
+            if (elements > most_zeros && !draco_accessors_.contains(i))
                 accessor["count"].refuse("{} elements without a bufferView are more than {}",
                                          elements, most_zeros);
             return;
@@ -278,6 +280,12 @@ class Checker {
             sparse["count"].refuse("{} is not within 1 and the accessor's {}", elements,
                                    accessor["count"].integer());
         const JsonValue indices = sparse["indices"].object();
+        for (const JsonValue& part : {indices, sparse["values"].object()})  // tinygltf's int
+            if (part.has("byteOffset") && part["byteOffset"].integer() > 0x7fffffff)
+                part["byteOffset"].refuse("{} is more than {}", part["byteOffset"].shown(),
+                                          0x7fffffff);
+        if (elements > 0x7fffffff)
+            sparse["count"].refuse("{} is more than {}", elements, 0x7fffffff);
         const std::uint64_t type = indices["componentType"].integer();
         if (type != 5121 && type != 5123 && type != 5125)
             indices["componentType"].refuse("{} is no unsigned integer type", type);
@@ -289,7 +297,11 @@ class Checker {
         if (image.has("uri") == image.has("bufferView"))
             image.refuse("has not one of 'uri' and 'bufferView'");
         if (image.has("uri")) uri(image["uri"], false);
-        optional_index(image, "bufferView", "bufferViews", "bufferView");
+        if (!image.has("bufferView")) return;
+        const std::size_t view = image["bufferView"].index(count("bufferViews"), "bufferView");
+        const JsonValue in = root_["bufferViews"].at(view);
+        if (in.has("extensions") && in["extensions"].object().has(compression))
+            image["bufferView"].refuse("bufferView {} is compressed, as no image can be", view);
     }
 
     void texture(const JsonValue& texture, std::size_t) {
@@ -396,6 +408,27 @@ class Checker {
             for (std::size_t t = 0; t < targets.size(); ++t)
                 for (const std::string& name : targets.at(t).object().keys())
                     (void)targets.at(t)[name.c_str()].index(count("accessors"), "accessor");
+        }
+    }
+
+    // Those whose elements are in their primitive's data, which draco() limits. Finds what it can:
+    // mesh() judges.
+    void find_draco_accessors() {
+        if (!root_.has("meshes")) return;
+        for (const nlohmann::json& mesh : file_.json["meshes"]) {
+            if (!mesh.is_object() || !mesh.contains("primitives")) continue;
+            for (const nlohmann::json& primitive : mesh["primitives"]) {
+                const auto extended = nlohmann::json::json_pointer(
+                    fmt::format("/extensions/{}/attributes", draco_extension));
+                if (!primitive.is_object() || !primitive.contains(extended)) continue;
+                if (primitive.contains("indices") && primitive["indices"].is_number_unsigned())
+                    draco_accessors_.insert(primitive["indices"].get<std::uint64_t>());
+                if (!primitive.contains("attributes") || !primitive["attributes"].is_object())
+                    continue;
+                for (const auto& [name, index] : primitive["attributes"].items())
+                    if (primitive[extended].contains(name) && index.is_number_unsigned())
+                        draco_accessors_.insert(index.get<std::uint64_t>());
+            }
         }
     }
 
@@ -538,6 +571,7 @@ class Checker {
     }
 
     void scene(const JsonValue& scene, std::size_t) {
+        extras(scene);
         if (!scene.has("nodes")) return;
         const JsonValue nodes = scene["nodes"].array();
         std::set<std::size_t> seen;
@@ -548,6 +582,9 @@ class Checker {
                 nodes.at(i).refuse("node {} is no root: it is a child of node {}", root,
                                    parent_[root]);
         }
+    }
+
+    void extras(const JsonValue& scene) {
         if (!scene.has("extras")) return;
         const JsonValue extras = scene["extras"];
         if (!extras.keys().empty() && extras.has(emitter_points_key) &&
@@ -559,7 +596,10 @@ class Checker {
     const GltfFile& file_;
     JsonValue root_;
     std::size_t light_count_ = 0;
-    std::uint64_t decompressed_ = 0;   // bytes, so far
+    std::uint64_t stored_ = 0;        // bytes of buffers
+    std::uint64_t decompressed_ = 0;  // bytes, so far
+    std::set<std::string> buffer_files_;
+    std::set<std::uint64_t> draco_accessors_;
     std::vector<std::size_t> parent_;  // of each node
 };
 

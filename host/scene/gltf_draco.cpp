@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "scene/gltf_draco.hpp"
 
-#include <draco/compression/decode.h>
+#include <draco/compression/mesh/mesh_edgebreaker_decoder.h>
+#include <draco/compression/mesh/mesh_sequential_decoder.h>
 
 #include <cstring>
 
@@ -9,6 +10,30 @@
 
 namespace manylight {
 namespace {
+
+// Decodes no attributes that would take more than `most_bytes`: their number and size are the
+// data's own.
+template <class Decoder>
+class BoundedDecoder : public Decoder {
+  public:
+    explicit BoundedDecoder(std::size_t most_bytes) : most_bytes_(most_bytes) {}
+
+  protected:
+    bool DecodeAllAttributes() override {
+        const draco::PointCloud& points = *this->point_cloud();
+        std::size_t bytes = 0;  // of a point: its values, and integers on the way to them
+        for (int i = 0; i < points.num_attributes(); ++i) {
+            const draco::PointAttribute& attribute = *points.attribute(i);
+            bytes += static_cast<std::size_t>(attribute.num_components()) *
+                     (draco::DataTypeLength(attribute.data_type()) + sizeof(std::int32_t));
+        }
+        return bytes <= most_bytes_ / std::max(points.num_points(), 1u) &&
+               Decoder::DecodeAllAttributes();
+    }
+
+  private:
+    std::size_t most_bytes_;
+};
 
 // One compressed primitive. Source of the layout: Draco bitstream specification 2.2, sections 4
 // (header) and 6 (connectivity).
@@ -28,12 +53,10 @@ class Primitive {
         triangles_ = model_.accessors[primitive_.indices].count / 3;
         const std::span<const unsigned char> bytes = accessors_.view_bytes(json_["bufferView"]);
         check_counts(bytes);
-        draco::DecoderBuffer buffer;
-        buffer.Init(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-        draco::Decoder decoder;
-        auto decoded = decoder.DecodeMeshFromBuffer(&buffer);
-        if (!decoded.ok()) refuse("{}", decoded.status().error_msg_string());
-        mesh_ = std::move(decoded).value();
+        if (bytes[8] == 1)
+            decode_as<draco::MeshEdgebreakerDecoder>(bytes);
+        else
+            decode_as<draco::MeshSequentialDecoder>(bytes);
         check_counts(mesh_->num_points(), mesh_->num_faces());
         provide_indices();
         for (const auto& [name, id] : json_["attributes"].items()) {
@@ -47,6 +70,18 @@ class Primitive {
     [[noreturn]] void refuse(fmt::format_string<T...> format, T&&... values) const {
         throw InputError("{}: {}: {}", file_.path, where_,
                          fmt::format(format, std::forward<T>(values)...));
+    }
+
+    template <class Decoder>
+    void decode_as(std::span<const unsigned char> bytes) {
+        draco::DecoderBuffer buffer;
+        buffer.Init(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+        mesh_ = std::make_unique<draco::Mesh>();
+        BoundedDecoder<Decoder> decoder(16 * bytes.size() + (std::size_t{1} << 28));
+        const draco::Status status = decoder.Decode(draco::DecoderOptions(), &buffer, mesh_.get());
+        if (!status.ok())
+            refuse("its Draco data cannot be decoded, or would need too much memory: {}",
+                   status.error_msg_string());
     }
 
     void check_counts(std::size_t vertices, std::size_t triangles) const {
@@ -87,7 +122,14 @@ class Primitive {
 
     void provide_indices() {
         const tinygltf::Accessor& accessor = model_.accessors[primitive_.indices];
-        const std::size_t bytes = tinygltf::GetComponentSizeInBytes(accessor.componentType);
+        const int type = accessor.componentType;
+        if (accessor.type != TINYGLTF_TYPE_SCALAR ||
+            (type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE &&
+             type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT &&
+             type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT))
+            refuse("accessor {} of its indices is not SCALAR of an unsigned integer type",
+                   primitive_.indices);
+        const std::size_t bytes = tinygltf::GetComponentSizeInBytes(type);
         if (bytes < 4 && vertices_ > std::size_t{1} << (8 * bytes))
             refuse("{} vertices do not fit indices of {} bytes", vertices_, bytes);
         std::vector<unsigned char> out(3 * triangles_ * bytes);

@@ -25,6 +25,8 @@ constexpr float farthest = 1e9f;    // m
 // bounds while the BVH is built and place in it.
 constexpr double vertex_bytes = 24;
 constexpr double triangle_bytes = 96;
+constexpr double instance_bytes = 128;
+constexpr double most_steps = 4e9;  // a minute or two
 
 float number(const tinygltf::Value& object, const char* key, double otherwise) {
     if (!object.IsObject() || !object.Has(key)) return static_cast<float>(otherwise);
@@ -46,6 +48,12 @@ class Loader {
           pose_(file, model_, accessors_, options.seconds),
           options_(options) {
         scene_.file = file.path;
+        for (const char* kind : {"buffers", "images"})
+            if (file.json.contains(kind))
+                for (const nlohmann::json& object : file.json[kind])
+                    if (object.contains("uri") &&
+                        !object["uri"].get_ref<const std::string&>().starts_with("data:"))
+                        scene_.files.push_back(path_of_uri(file, object["uri"]).string());
     }
 
     Scene load() {
@@ -180,14 +188,33 @@ class Loader {
                static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
     }
 
+    // About how much there is to compute for an instance of a node's mesh.
+    [[nodiscard]] double steps_of(int node) const {
+        const int skin = model_.nodes[node].skin;
+        const auto joints = skin < 0 ? 0.0 : static_cast<double>(model_.skins[skin].joints.size());
+        double steps = 0;
+        for (const auto& primitive : model_.meshes[model_.nodes[node].mesh].primitives) {
+            steps += 10 + joints;
+            if (is_rendered(primitive))
+                steps += static_cast<double>(
+                             model_.accessors[primitive.attributes.at("POSITION")].count) *
+                         static_cast<double>(1 + primitive.targets.size());
+        }
+        return steps;
+    }
+
     // Refuses scenes whose triangles, instances counted one by one, cannot fit: a file of a
     // kilobyte may ask for any number of them.
     void check_memory(std::size_t most_bytes) {
         double vertices = 0;
         double triangles = 0;
+        double instance_count = 0;
+        double steps = 0;  // of the loops that read them
         for (const int node : nodes_) {
             if (model_.nodes[node].mesh < 0) continue;
             const auto instances = static_cast<double>(count_instances(file_, node));
+            instance_count = std::max(instance_count, instances);
+            steps += instances * steps_of(node);
             for (const auto& primitive : model_.meshes[model_.nodes[node].mesh].primitives) {
                 if (!is_rendered(primitive)) continue;
                 const std::size_t count =
@@ -201,12 +228,18 @@ class Loader {
         }
         whole_ = vertices + triangles;
         constexpr double gib = 1 << 30;
-        const double bytes = vertices * vertex_bytes + triangles * triangle_bytes;
+        const double bytes =
+            vertices * vertex_bytes + triangles * triangle_bytes + instance_count * instance_bytes;
         if (bytes > static_cast<double>(most_bytes))
             throw InputError(
                 "{}: its {:.0f} triangles, instances counted one by one, need at least {:.1f} GiB, "
                 "and there are {:.1f} GiB of memory",
                 scene_.file, triangles, bytes / gib, static_cast<double>(most_bytes) / gib);
+        if (steps > most_steps)
+            throw InputError(
+                "{}: its instances, joints and morph targets make {:.3g} steps to load: more than "
+                "{:.3g}",
+                scene_.file, steps, most_steps);
     }
 
     // One more vertex or triangle is there.

@@ -15,14 +15,30 @@
 namespace manylight {
 namespace {
 
-// The library refuses images in data URIs of types that it does not know, such as WebP; they are
-// not its business.
-bool has_images_in_text(const nlohmann::json& json) {
+// The library refuses images in data URIs of types that it does not know, such as WebP, and reads
+// whole those beside the file; they are not its business.
+bool has_images_by_name(const nlohmann::json& json) {
     return json.contains("images") &&
-           std::ranges::any_of(json["images"], [](const nlohmann::json& image) {
-               return image.contains("uri") &&
-                      image["uri"].get_ref<const std::string&>().starts_with("data:");
-           });
+           std::ranges::any_of(json["images"],
+                               [](const nlohmann::json& image) { return image.contains("uri"); });
+}
+
+bool has_plus(const nlohmann::json& buffer) {
+    return buffer.contains("uri") &&
+           !buffer["uri"].get_ref<const std::string&>().starts_with("data:") &&
+           buffer["uri"].get_ref<const std::string&>().find('+') != std::string::npos;
+}
+
+// The library takes a plus for a blank.
+bool has_plus(const GltfFile& file) {
+    return file.json.contains("buffers") &&
+           std::ranges::any_of(file.json["buffers"],
+                               [](const nlohmann::json& buffer) { return has_plus(buffer); });
+}
+
+void escape_plus(std::string& uri) {
+    for (std::size_t at = 0; (at = uri.find('+', at)) != std::string::npos;)
+        uri.replace(at, 1, "%2B");
 }
 
 // Buffers that only say how large others are when decompressed (EXT_meshopt_compression).
@@ -43,10 +59,13 @@ bool has_accessors_without_view(const GltfFile& file) {
 std::vector<unsigned char> without_refused(const GltfFile& file) {
     nlohmann::json json = file.json;
     json.erase("images");
-    if (json.contains("buffers"))
+    if (json.contains("buffers")) {
         for (nlohmann::json& buffer : json["buffers"])
             if (is_fallback_buffer(buffer))
                 buffer = {{"byteLength", 1}, {"uri", "data:application/octet-stream;base64,AA=="}};
+            else if (has_plus(buffer))
+                escape_plus(buffer["uri"].get_ref<std::string&>());
+    }
     if (has_accessors_without_view(file))
         for (nlohmann::json& accessor : json["accessors"])
             if (lacks_view(accessor)) accessor["bufferView"] = 0;
@@ -79,7 +98,7 @@ tinygltf::Model parse_gltf(const GltfFile& file) {
     std::string error;
     std::string warning;
     std::vector<unsigned char> changed;
-    if (has_images_in_text(file.json) || has_fallback_buffers(file) ||
+    if (has_images_by_name(file.json) || has_fallback_buffers(file) || has_plus(file) ||
         has_accessors_without_view(file))
         changed = without_refused(file);
     const std::vector<unsigned char>& bytes = changed.empty() ? file.bytes : changed;

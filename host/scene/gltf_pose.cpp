@@ -185,7 +185,7 @@ std::size_t count_instances(const GltfFile& file, int node) {
     for (const char* key : {"TRANSLATION", "ROTATION", "SCALE"})
         if (attributes->contains(key))
             return file.json["accessors"][(*attributes)[key].get<std::size_t>()]["count"];
-    return 0;
+    return 1;
 }
 
 std::vector<glm::dmat4> mesh_instances(const GltfFile& file, int node, Accessors& accessors) {
@@ -204,6 +204,9 @@ std::vector<glm::dmat4> mesh_instances(const GltfFile& file, int node, Accessors
         out.resize(values.size(), glm::dmat4(1));
         return values;
     };
+    if (!attributes.contains("TRANSLATION") && !attributes.contains("ROTATION") &&
+        !attributes.contains("SCALE"))
+        return {glm::dmat4(1)};  // as many as its own attributes say, all here
     const std::vector<glm::vec4> translations = read("TRANSLATION", Attribute::position);
     const std::vector<glm::vec4> rotations = read("ROTATION", Attribute::rotation);
     const std::vector<glm::vec4> scales = read("SCALE", Attribute::position);

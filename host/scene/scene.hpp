@@ -43,6 +43,7 @@ struct Bounds {
 
 struct Scene {
     std::string file;                       // as the user named it
+    std::vector<std::string> files;         // beside it, that it names
     std::vector<glm::vec3> vertices;        // finite
     std::vector<glm::vec3> vertex_normals;  // per vertex, unit or 0 where flat; empty if all
     std::vector<std::uint32_t> indices;     // [3 * triangle + corner] into vertices
