@@ -23,7 +23,7 @@ import matplotlib.pyplot as plt
 PROGRAM = "build/manylight"
 FOLDER = pathlib.Path("build/atlas")
 HEIGHT = 72
-OPTIONS = {"--light-samples": "4", "--spp": "4", "--seeds": "3", "--most-seconds": "60",
+OPTIONS = {"--light-samples": "4", "--spp": "4", "--seeds": "3", "--most-seconds": "40",
            "--reference-time": "25"}
 # Difficulties that are not the scene's.
 OTHER = (

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # The failure atlas: sweeps one difficulty at a time, from harmless to hopeless, and charts every
 # sampler at each value: build/atlas/atlas.json, heat maps, and pictures of where each sampler
-# breaks. On 2 cores it takes less than an hour. What is charted is kept: an interrupted atlas goes
+# breaks. On 2 cores it takes about 16 minutes. What is charted is kept: an interrupted atlas goes
 # on where it was.
 #
 # usage: scripts/atlas.sh [--only NAME,...] [--again] [--draw] [--list] [--table] [OPTION...]
