@@ -42,13 +42,21 @@
 #define COLOR_PARAMETERS
 #define COLOR_ARGUMENTS
 #endif
+#if HAS_INSTANCES
+#define PLACE_PARAMETERS , __global const Instance *instances, uint instance_count
+#define PLACE_ARGUMENTS , instances, instance_count
+#else
+#define PLACE_PARAMETERS
+#define PLACE_ARGUMENTS
+#endif
 #define MESH_PARAMETERS                                                               \
     __global const float *vertices, __global const uint *indices,                     \
         __global const uint *triangle_materials NORMAL_PARAMETERS MATERIAL_PARAMETERS \
-            MAP_PARAMETERS COLOR_PARAMETERS
-#define MESH_ARGUMENTS \
-    vertices, indices, \
-        triangle_materials NORMAL_ARGUMENTS MATERIAL_ARGUMENTS MAP_ARGUMENTS COLOR_ARGUMENTS
+            MAP_PARAMETERS COLOR_PARAMETERS PLACE_PARAMETERS
+#define MESH_ARGUMENTS                                                                       \
+    vertices, indices,                                                                       \
+        triangle_materials NORMAL_ARGUMENTS MATERIAL_ARGUMENTS MAP_ARGUMENTS COLOR_ARGUMENTS \
+            PLACE_ARGUMENTS
 
 // The primary ray of an item; `jitter` 0 puts it through the pixel's centre.
 static Ray primary_ray(Tiles tiles, uint item, Camera camera, uint jitter, uint pixel_sample,
@@ -107,27 +115,42 @@ static void write_surface(Tiles tiles, Camera camera, __global Surface* surfaces
         surface->position = (float4)(0.0f, 0.0f, 0.0f, -1.0f);
         return;
     }
-    __global const uint* corner = indices + 3 * triangle;
-    const float3 v0 = vload3(corner[0], vertices);
-    const float3 v1 = vload3(corner[1], vertices);
-    const float3 v2 = vload3(corner[2], vertices);
+    surface->triangle = triangle;
+#if HAS_INSTANCES
+    __global const Instance* in = find_instance(instances, instance_count, triangle);
+    if (in) triangle = in->stored + (triangle - in->first);
+    uint3 corner = vload3(triangle, indices);
+    if (in && in->mirrored) corner = corner.xzy;
+#else
+    const uint3 corner = vload3(triangle, indices);
+#endif
+    const float3 v0 = point_to_world(in, vload3(corner.x, vertices));
+    const float3 v1 = point_to_world(in, vload3(corner.y, vertices));
+    const float3 v2 = point_to_world(in, vload3(corner.z, vertices));
     const float3 face = cross(v1 - v0, v2 - v0);
     const float2 weights = hit_weights(ray, v0, v1 - v0, v2 - v0);
     const bool front = dot(face, ray.direction) < 0.0f;
     const float3 geometric = normalize(front ? face : -face);
     float3 normal = geometric;
 #if HAS_SMOOTH
-    const float3 smooth = vload3(corner[0], vertex_normals) * (1.0f - weights.x - weights.y) +
-                          vload3(corner[1], vertex_normals) * weights.x +
-                          vload3(corner[2], vertex_normals) * weights.y;
+    const float3 smooth =
+        normal_to_world(in, vload3(corner.x, vertex_normals)) * (1.0f - weights.x - weights.y) +
+        normal_to_world(in, vload3(corner.y, vertex_normals)) * weights.x +
+        normal_to_world(in, vload3(corner.z, vertex_normals)) * weights.y;
     if (dot(smooth, smooth) > 0.0f)
         normal = normalize(dot(smooth, geometric) < 0.0f ? -smooth : smooth);
 #endif
-    const float extent = max(max(largest_part(v0), largest_part(v1)), largest_part(v2));
+    float extent = max(max(largest_part(v0), largest_part(v1)), largest_part(v2));
+#if HAS_INSTANCES
+    if (in) {  // rays are rounded relative to its place, too
+        const float3 place = place_of(in);
+        extent = max(max(extent, largest_part(v0 - place)),
+                     max(largest_part(v1 - place), largest_part(v2 - place)));
+    }
+#endif
     surface->position = (float4)(v0 + (v1 - v0) * weights.x + (v2 - v0) * weights.y, distance);
     surface->normal = (float4)(normal, 0.0f);
     surface->geometric = (float4)(geometric, OFFSET_SCALE * extent);
-    surface->triangle = triangle;
     const uint material = triangle_materials[triangle];
     surface->material = material;
     surface->front = front ? 1u : 0u;
@@ -135,8 +158,8 @@ static void write_surface(Tiles tiles, Camera camera, __global Surface* surfaces
     Material own = materials[material];
     float3 color = (float3)(1.0f);
 #if HAS_COLORS
-    color = colors[corner[0]].xyz * (1.0f - weights.x - weights.y) +
-            colors[corner[1]].xyz * weights.x + colors[corner[2]].xyz * weights.y;
+    color = colors[corner.x].xyz * (1.0f - weights.x - weights.y) +
+            colors[corner.y].xyz * weights.x + colors[corner.z].xyz * weights.y;
 #endif
 #if HAS_TEXTURES
     const float share =
@@ -149,13 +172,21 @@ static void write_surface(Tiles tiles, Camera camera, __global Surface* surfaces
     own.roughness = max(own.roughness * polish.y * polish.y, SMALLEST_ALPHA);
     own.emission.xyz *=
         sample_map(TEXTURE_ARGUMENTS, map + MAP_EMISSION, corner, weights, share).xyz;
+#if HAS_SPECULAR_MAPS
+    own.specular *= sample_map(TEXTURE_ARGUMENTS, map + MAP_SPECULAR, corner, weights, share).w;
+    own.reflectance.xyz =
+        min(own.reflectance.xyz *
+                sample_map(TEXTURE_ARGUMENTS, map + MAP_SPECULAR_COLOR, corner, weights, share).xyz,
+            1.0f);
+#endif
     if (maps[map + MAP_NORMAL].texture != NO_TEXTURE) {
         const float3 texel =
             sample_map(TEXTURE_ARGUMENTS, map + MAP_NORMAL, corner, weights, share).xyz;
         float4 tangent = (float4)(0.0f);
 #if HAS_TANGENTS
-        tangent = tangents[corner[0]] * (1.0f - weights.x - weights.y) +
-                  tangents[corner[1]] * weights.x + tangents[corner[2]] * weights.y;
+        tangent = tangent_to_world(in, tangents[corner.x]) * (1.0f - weights.x - weights.y) +
+                  tangent_to_world(in, tangents[corner.y]) * weights.x +
+                  tangent_to_world(in, tangents[corner.z]) * weights.y;
 #endif
         if (dot(tangent.xyz, tangent.xyz) == 0.0f)
             tangent =

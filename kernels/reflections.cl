@@ -60,12 +60,15 @@ KERNEL void reflections_add(Tiles tiles, Camera camera, BVH_PARAMETERS,
     if (dot(r.normal, wi) <= 0.0f || dot(r.geometric, wi) <= 0.0f) return;
     const Ray ray = {shadow_origin(&r), wi, INFINITY};
     const Hit hit = closest_hit(BVH_ARGUMENTS, ray);
+#if HAS_INSTANCES
+    if (hit.triangle >= bvh_instances[0].first) return;  // no light is of one
+#endif
     const float area = hit.triangle == ~0u ? 0.0f : cell_areas[hit.triangle];
     if (area == 0.0f) return;
-    __global const uint* corner = indices + 3 * hit.triangle;
-    const float3 v0 = vload3(corner[0], vertices);
-    const float3 edge1 = vload3(corner[1], vertices) - v0;
-    const float3 edge2 = vload3(corner[2], vertices) - v0;
+    const uint3 corner = vload3(hit.triangle, indices);
+    const float3 v0 = vload3(corner.x, vertices);
+    const float3 edge1 = vload3(corner.y, vertices) - v0;
+    const float3 edge2 = vload3(corner.z, vertices) - v0;
     const float3 face = cross(edge1, edge2);
     const float cosine = -dot(wi, normalize(face));
     float4 emission = materials[triangle_materials[hit.triangle]].emission;

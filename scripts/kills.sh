@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Kills checkpointed renders at 100 random moments and compares what goes on from there with renders
-# without a break. Takes about 10 minutes.
+# without a break. Takes about 5 minutes.
 #
 # usage: scripts/kills.sh [--kills N] [--seed S]
 set -euo pipefail

@@ -11,7 +11,7 @@ clang, kernels = sys.argv[1], pathlib.Path(sys.argv[2])
 files = sorted(p for p in kernels.rglob("*.cl"))
 features = ["POINT", "SPOT", "DIRECTIONAL", "ORIENTED", "TRIANGLE", "QUAD", "GGX", "SMOOTH",
             "EMISSION", "REFLECTIONS", "REGIONS", "TEXTURES", "TANGENTS", "COLORS", "ALPHA",
-            "REFLECTANCE"]
+            "REFLECTANCE", "INSTANCES", "SPECULAR_MAPS"]
 failed = 0
 for file in files:
     for width in (4, 8, 16):

@@ -180,15 +180,21 @@ NAN = struct.pack("<f", float("nan"))
 INF = struct.pack("<f", float("inf"))
 INFINITIES = "data:application/octet-stream;base64," + base64.b64encode(8 * INF).decode()
 
+
+def many_instances(nodes, count, attribute):
+    """Of 1000 primitives, `count` for each node; places or scales are zeros that no file need hold."""
+    def change(document):
+        document["accessors"].append({"componentType": 5126, "type": "VEC3", "count": count})
+        document["meshes"][document["nodes"][0]["mesh"]]["primitives"] *= 1000
+        document["nodes"][0]["extensions"] = {"EXT_mesh_gpu_instancing": {
+            "attributes": {attribute: len(document["accessors"]) - 1}}}
+        for _ in range(nodes - 1):
+            document["scenes"][0]["nodes"].append(len(document["nodes"]))
+            document["nodes"].append({key: document["nodes"][0][key] for key in ("mesh", "extensions")})
+    return change
+
+
 # name: (change, words that the message must hold)
-def more_instances_than_memory(document):
-    """2^24 instances, whose places are zeros that the file need not hold, of 1000 primitives."""
-    document["accessors"].append({"componentType": 5126, "type": "VEC3", "count": 1 << 24})
-    document["meshes"][document["nodes"][0]["mesh"]]["primitives"] *= 1000
-    document["nodes"][0]["extensions"] = {"EXT_mesh_gpu_instancing": {
-        "attributes": {"TRANSLATION": len(document["accessors"]) - 1}}}
-
-
 CHANGES = {
     "asset missing": (put(["asset"], ...), ["'asset' is missing"]),
     "asset no object": (put(["asset"], 3), ["asset", "3", "not an object"]),
@@ -413,7 +419,8 @@ CHANGES = {
     "morph targets beyond all time": (lambda d: (d["accessors"].append({
         "componentType": 5126, "type": "VEC3", "count": 1 << 24}), put(POSITION, d["accessors"][-1])(d),
         put(PRIMITIVE + ["targets"], [{"POSITION": 0}] * 1000)(d)), ["morph targets", "steps"]),
-    "instances beyond memory": (more_instances_than_memory, ["triangles", "GiB of memory"]),
+    "instances beyond memory": (many_instances(64, 1 << 24, "TRANSLATION"), ["instances", "GiB of memory"]),
+    "flat copies beyond memory": (many_instances(1, 1 << 20, "SCALE"), ["triangles", "GiB of memory"]),
     "accessor min of two": (put(POSITION + ["min"], [0, 0]), ["accessors[0].min", "2"]),
     "view buffer beyond": (put(VIEW + ["buffer"], 1), ["bufferViews[0].buffer", "1"]),
     "view length 0": (put(VIEW + ["byteLength"], 0), ["bufferViews[0].byteLength"]),

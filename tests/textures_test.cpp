@@ -336,19 +336,20 @@ class TexturedFile {
         return document["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"];
     }
 
-    [[nodiscard]] Scene load() const {
+    [[nodiscard]] Scene load(std::size_t most_bytes = 0) const {
         const std::string path = test::temporary("textured.gltf");
         std::ofstream(path) << document;
-        return load_scene(path);
+        return load_scene(path, {.most_bytes = most_bytes});
     }
 
-    // The base colour where the camera looks.
-    [[nodiscard]] glm::vec3 color() const {
+    // The material where the camera looks.
+    [[nodiscard]] Material material() const {
         const Scene scene = load();
         const reference::Ray ray{{0, 0, 3}, {0, 0, -1}};
         const auto hit = reference::Tracer(scene).closest_hit(ray);
-        return glm::vec3(reference::material_at(scene, ray, *hit).base_color);
+        return reference::material_at(scene, ray, *hit);
     }
+    [[nodiscard]] glm::vec3 color() const { return glm::vec3(material().base_color); }
 };
 
 // Two rows, red and green over blue and grey, 8 x 8 texels each.
@@ -389,6 +390,38 @@ void expect_near(glm::vec3 found, glm::vec3 expected, float tolerance = 1e-3f) {
 }
 
 }  // namespace
+
+// 16 x 16 texels of 4 bytes, and their levels.
+TEST(textures, beyond_memory) {
+    (void)write_image("large.png");
+    TexturedFile file;
+    file.document["images"] = {{{"uri", "large.png"}}};
+    EXPECT_EQ(file.load(1400).texels.size(), 256u + 64 + 16 + 4 + 1);
+    EXPECT_THROW((void)file.load(1300), InputError);
+}
+
+// The factor is in A, the colour in RGB; F0 is at most 1 after all factors.
+TEST(textures, specular) {
+    const std::string path = test::temporary("specular.png");
+    const auto out = OIIO::ImageOutput::create(path);
+    const std::uint8_t texel[] = {255, 188, 0, 102};
+    OIIO::ImageSpec spec(1, 1, 4, OIIO::TypeDesc::UINT8);
+    spec["oiio:UnassociatedAlpha"] = 1;
+    EXPECT_TRUE(out->open(path, spec) && out->write_image(OIIO::TypeDesc::UINT8, texel) &&
+                out->close());
+    TexturedFile file;
+    file.document["images"] = {{{"uri", "specular.png"}}};
+    file.document["materials"] = {{{"extensions",
+                                    {{"KHR_materials_specular",
+                                      {{"specularFactor", 0.5},
+                                       {"specularTexture", {{"index", 0}}},
+                                       {"specularColorFactor", {100, 40, 1}},
+                                       {"specularColorTexture", {{"index", 0}}}}}}}}};
+    EXPECT_TRUE(file.load().warnings.empty());
+    const Material material = file.material();
+    EXPECT_NEAR(material.specular, 0.2f, 1e-6f);
+    expect_near(glm::vec3(material.reflectance), {1, 0.8f, 0}, 0.01f);
+}
 
 // Every format, beside the file and as a data URI; a format is known by its bytes.
 TEST(textures, image_files) {
@@ -516,6 +549,10 @@ TEST(textures, agree_with_the_reference) {
     add(floor, MAP_BASE_COLOR, true, LEVELS_BLENDED);
     add(floor, MAP_METALLIC_ROUGHNESS, false, LEVELS_NEAREST);
     add(floor, MAP_NORMAL, false, LEVELS_BLENDED);
+    add(floor, MAP_SPECULAR, false, LEVELS_BLENDED);
+    add(floor, MAP_SPECULAR_COLOR, true, LEVELS_BLENDED);
+    scene.materials[floor].specular = 0.9f;
+    scene.materials[floor].reflectance = float4(0.05f, 4, 0.3f, 0);
     add(fence, MAP_BASE_COLOR, true, LEVELS_FINEST);
     add(scene.triangle_materials[4], MAP_EMISSION, true, LEVELS_BLENDED);
     scene.materials[fence].cutoff = 0.5f;

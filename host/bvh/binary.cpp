@@ -223,13 +223,21 @@ class Builder {
     std::size_t reported_ = 0;
 };
 
+BinaryBvh build(std::vector<Reference> references, unsigned leaf_size,
+                const std::function<void(double)>& report) {
+    if (references.empty()) return {};
+    for (Reference& r : references)
+        for (int k = 0; k < 4; ++k) r.centre[k] = r.box.lower[k] * 0.5f + r.box.upper[k] * 0.5f;
+    return Builder(std::move(references), leaf_size, report).build();
+}
+
 }  // namespace
 
-BinaryBvh build_binary_bvh(const Scene& scene, unsigned leaf_size,
-                           const std::function<void(double)>& report) {
+BinaryBvh build_binary_bvh(const Scene& scene, std::size_t first, std::size_t count,
+                           unsigned leaf_size, const std::function<void(double)>& report) {
     std::vector<Reference> references;
-    references.reserve(scene.triangle_count());
-    for (std::size_t t = 0; t < scene.triangle_count(); ++t) {
+    references.reserve(count);
+    for (std::size_t t = first; t < first + count; ++t) {
         glm::vec3 v[3];
         Reference r;
         for (int k = 0; k < 3; ++k) {
@@ -237,12 +245,23 @@ BinaryBvh build_binary_bvh(const Scene& scene, unsigned leaf_size,
             r.box.add({v[k].x, v[k].y, v[k].z, 0}, {v[k].x, v[k].y, v[k].z, 0});
         }
         if (glm::cross(v[1] - v[0], v[2] - v[0]) == glm::vec3(0)) continue;
-        for (int k = 0; k < 4; ++k) r.centre[k] = r.box.lower[k] * 0.5f + r.box.upper[k] * 0.5f;
         r.triangle = static_cast<std::uint32_t>(t);
         references.push_back(r);
     }
-    if (references.empty()) return {};
-    return Builder(std::move(references), leaf_size, report).build();
+    return build(std::move(references), leaf_size, report);
+}
+
+BinaryBvh build_binary_bvh(std::span<const Bounds> boxes) {
+    std::vector<Reference> references;
+    for (std::size_t i = 0; i < boxes.size(); ++i) {
+        const glm::vec3& low = boxes[i].lower;
+        const glm::vec3& high = boxes[i].upper;
+        Reference r;
+        r.box.add({low.x, low.y, low.z, 0}, {high.x, high.y, high.z, 0});
+        r.triangle = static_cast<std::uint32_t>(i);
+        references.push_back(r);
+    }
+    return build(std::move(references), 1, {});
 }
 
 }  // namespace manylight

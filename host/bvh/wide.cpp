@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #define GLM_ENABLE_EXPERIMENTAL
 #include <glm/gtx/component_wise.hpp>
 
@@ -21,13 +22,21 @@ float half_area(const Bounds& b) {
     return d.x * d.y + d.y * d.z + d.z * d.x;
 }
 
+// A node's child as an int, and the entries of a traversal's stack that it needs.
+struct Child {
+    int child;
+    unsigned stack;
+};
+
 class Collapser {
   public:
-    Collapser(const Scene& scene, const BinaryBvh& binary, WideBvh& wide, float padding)
-        : scene_(scene), binary_(binary), wide_(wide), padding_(padding) {}
+    using Leaf = std::function<Child(const BinaryNode&)>;
 
-    // Makes a wide node of a binary one; returns its index and the stack entries that it needs.
-    std::pair<int, unsigned> collapse(std::uint32_t root) {
+    Collapser(const BinaryBvh& binary, WideBvh& wide, float padding, Leaf leaf)
+        : binary_(binary), wide_(wide), padding_(padding), leaf_(std::move(leaf)) {}
+
+    // Makes a wide node of a binary one.
+    Child collapse(std::uint32_t root) {
         const std::vector<std::uint32_t> children = gather(root);
         const int index = static_cast<int>(wide_.nodes.size() / (7 * wide_.width));
         wide_.nodes.resize(wide_.nodes.size() + 7 * wide_.width);
@@ -40,13 +49,9 @@ class Collapser {
                 bounds = node.bounds;
                 bounds.lower -= padding_;
                 bounds.upper += padding_;
-                if (node.count > 0) {
-                    child = make_block(node);
-                } else {
-                    const auto [inner, need] = collapse(children[lane]);
-                    child = inner;
-                    stack = std::max(stack, static_cast<unsigned>(children.size()) - 1 + need);
-                }
+                const Child below = node.count > 0 ? leaf_(node) : collapse(children[lane]);
+                child = below.child;
+                stack = std::max(stack, static_cast<unsigned>(children.size()) - 1 + below.stack);
             }
             float* lanes =
                 wide_.nodes.data() + static_cast<std::size_t>(index) * 7 * wide_.width + lane;
@@ -78,55 +83,159 @@ class Collapser {
         return nodes;
     }
 
-    int make_block(const BinaryNode& leaf) {
-        const std::size_t index = wide_.blocks.size() / (block_rows * wide_.block);
-        wide_.blocks.resize(wide_.blocks.size() + block_rows * wide_.block, 0.0f);
-        float* block = wide_.blocks.data() + index * block_rows * wide_.block;
-        for (unsigned lane = 0; lane < leaf.count; ++lane) {
-            const std::uint32_t triangle = binary_.triangles[leaf.first + lane];
-            const std::uint32_t* corner = scene_.indices.data() + 3 * std::size_t{triangle};
-            const glm::vec3 first = scene_.vertices[corner[0]];
-            const glm::vec3 rows[] = {first, scene_.vertices[corner[1]] - first,
-                                      scene_.vertices[corner[2]] - first};
-            for (int row = 0; row < 9; ++row)
-                block[row * wide_.block + lane] = rows[row / 3][row % 3];
-            const glm::vec3 edges[] = {rows[1], rows[2], rows[2] - rows[1]};
-            for (int edge = 0; edge < 3; ++edge)
-                block[(10 + edge) * wide_.block + lane] = glm::compMax(glm::abs(edges[edge]));
-            block[9 * wide_.block + lane] = std::bit_cast<float>(triangle);
-        }
-        return ~static_cast<int>(index << 4 | (leaf.count - 1));
-    }
-
-    const Scene& scene_;
     const BinaryBvh& binary_;
     WideBvh& wide_;
     float padding_;
+    Leaf leaf_;
+};
+
+// A block of a leaf's triangles.
+Child make_block(const Scene& scene, const BinaryBvh& binary, const BinaryNode& leaf,
+                 WideBvh& wide) {
+    const std::size_t index = wide.blocks.size() / (block_rows * wide.block);
+    wide.blocks.resize(wide.blocks.size() + block_rows * wide.block, 0.0f);
+    float* block = wide.blocks.data() + index * block_rows * wide.block;
+    for (unsigned lane = 0; lane < leaf.count; ++lane) {
+        const std::uint32_t triangle = binary.triangles[leaf.first + lane];
+        const std::uint32_t* corner = scene.indices.data() + 3 * std::size_t{triangle};
+        const glm::vec3 first = scene.vertices[corner[0]];
+        const glm::vec3 rows[] = {first, scene.vertices[corner[1]] - first,
+                                  scene.vertices[corner[2]] - first};
+        for (int row = 0; row < 9; ++row) block[row * wide.block + lane] = rows[row / 3][row % 3];
+        const glm::vec3 edges[] = {rows[1], rows[2], rows[2] - rows[1]};
+        for (int edge = 0; edge < 3; ++edge)
+            block[(10 + edge) * wide.block + lane] = glm::compMax(glm::abs(edges[edge]));
+        block[9 * wide.block + lane] = std::bit_cast<float>(triangle);
+    }
+    return {~static_cast<int>(index << 4 | (leaf.count - 1)), 1};
+}
+
+// A node whose lanes are all empty, and a block of none.
+Child make_nothing(WideBvh& wide) {
+    wide.nodes.assign(7 * wide.width, std::bit_cast<float>(-1));
+    std::fill_n(wide.nodes.begin(), 3 * wide.width, std::numeric_limits<float>::infinity());
+    std::fill_n(wide.nodes.begin() + 3 * wide.width, 3 * wide.width,
+                -std::numeric_limits<float>::infinity());
+    wide.blocks.assign(block_rows * wide.block, 0.0f);
+    return {0, 1};
+}
+
+// [shared mesh] the largest coordinate, in its frame, of points within `reach` of the world's
+// origin.
+std::vector<float> reach_in_meshes(const Scene& scene, float reach) {
+    std::vector<float> largest(scene.shared_meshes.size(), 0.f);
+    for (const Instance& in : scene.instances)
+        for (const float4& row : in.to_object) {
+            float sum = 0;
+            for (int k = 0; k < 3; ++k)
+                sum += std::abs(row[k]) * (reach + std::abs(in.to_world[k].w));
+            largest[in.mesh] = std::max(largest[in.mesh], sum);
+        }
+    return largest;
+}
+
+// Builds what a scene is made of: [0] what stands in the world, and each shared mesh.
+std::vector<BinaryBvh> build_parts(const Scene& scene, unsigned block,
+                                   const std::function<void(double)>& report) {
+    std::vector<std::pair<std::size_t, std::size_t>> runs = {{0, scene.own_triangle_count()}};
+    for (const SharedMesh& mesh : scene.shared_meshes)
+        runs.emplace_back(mesh.first_triangle, mesh.triangle_count);
+    std::vector<BinaryBvh> parts;
+    const auto all = static_cast<double>(std::max<std::size_t>(scene.triangle_count(), 1));
+    for (const auto& [first, count] : runs)
+        parts.push_back(build_binary_bvh(scene, first, count, block, [&](double share) {
+            if (report)
+                report((static_cast<double>(first) + share * static_cast<double>(count)) / all);
+        }));
+    return parts;
+}
+
+class WideBuilder {
+  public:
+    WideBuilder(const Scene& scene, float reach, std::vector<BinaryBvh> parts, WideBvh& wide)
+        : scene_(scene), reach_(reach), parts_(std::move(parts)), wide_(wide) {
+        std::size_t leaves = 0;
+        for (const BinaryBvh& part : parts_)
+            leaves += static_cast<std::size_t>(std::ranges::count_if(
+                part.nodes, [](const BinaryNode& node) { return node.count > 0; }));
+        wide.blocks.reserve(leaves * block_rows * wide.block);
+        wide.nodes.reserve(leaves * 7);  // about a node per `width` leaves
+    }
+
+    // Returns the entries of a stack that a traversal needs.
+    unsigned build() {
+        if (scene_.instances.empty())
+            return (parts_[0].nodes.empty() ? make_nothing(wide_) : add_part(0, reach_)).stack;
+        std::vector<Bounds> boxes;
+        std::vector<int> names;  // [box] the instance, or -1: what stands in the world
+        if (!parts_[0].nodes.empty()) {
+            boxes.push_back(parts_[0].nodes[0].bounds);
+            names.push_back(-1);
+        }
+        for (std::size_t i = 0; i < scene_.instances.size(); ++i) {
+            const Instance& in = scene_.instances[i];
+            const BinaryBvh& mesh = parts_[1 + in.mesh];
+            if (mesh.nodes.empty()) continue;
+            Bounds& box = boxes.emplace_back();
+            for (int k = 0; k < 8; ++k) box.add(point_to_world(in, mesh.nodes[0].bounds.corner(k)));
+            names.push_back(static_cast<int>(i));
+        }
+        if (boxes.empty()) return make_nothing(wide_).stack;
+        add_top(boxes, names);
+        const std::vector<float> reach = reach_in_meshes(scene_, reach_);
+        std::vector<Child> roots;
+        unsigned deepest = 0;
+        for (std::uint32_t mesh = 0; mesh < scene_.shared_meshes.size(); ++mesh) {
+            const bool empty = parts_[1 + mesh].nodes.empty();
+            roots.push_back(empty ? Child{0, 0} : add_part(1 + mesh, 2 * reach[mesh]));
+            deepest = std::max(deepest, roots.back().stack);
+        }
+        wide_.instances = scene_.instances;
+        for (Instance& in : wide_.instances) in.root = roots[in.mesh].child;
+        return top_stack_ + deepest;
+    }
+
+  private:
+    Child add_part(std::size_t part, float reach) {
+        const BinaryBvh& binary = parts_[part];
+        const Child root = Collapser(binary, wide_, padding_scale * reach, [&](const auto& leaf) {
+                               return make_block(scene_, binary, leaf, wide_);
+                           }).collapse(0);
+        parts_[part] = {};
+        return root;
+    }
+
+    // Twice the padding: matrices are rounded, too.
+    void add_top(const std::vector<Bounds>& boxes, const std::vector<int>& names) {
+        const BinaryBvh top = build_binary_bvh(boxes);
+        top_stack_ =
+            Collapser(top, wide_, 2 * padding_scale * reach_,
+                      [&](const BinaryNode& leaf) {
+                          const int name = names[top.triangles[leaf.first]];
+                          return name < 0 ? add_part(0, reach_) : Child{INSTANCE_CHILD + name, 1};
+                      })
+                .collapse(0)
+                .stack;
+    }
+
+    const Scene& scene_;
+    float reach_;
+    std::vector<BinaryBvh> parts_;
+    WideBvh& wide_;
+    unsigned top_stack_ = 0;
 };
 
 }  // namespace
 
 WideBvh build_wide_bvh(const Scene& scene, unsigned width, unsigned block, float reach,
                        const std::function<void(double)>& report) {
-    const BinaryBvh binary = build_binary_bvh(
-        scene, block, report ? [&](double share) { report(0.8 * share); } : report);
     WideBvh wide;
     wide.width = width;
     wide.block = block;
-    unsigned stack = 1;
-    if (binary.nodes.empty()) {  // a root whose lanes are all empty, and a block of none
-        wide.nodes.assign(7 * width, std::bit_cast<float>(-1));
-        std::fill_n(wide.nodes.begin(), 3 * width, std::numeric_limits<float>::infinity());
-        std::fill_n(wide.nodes.begin() + 3 * width, 3 * width,
-                    -std::numeric_limits<float>::infinity());
-        wide.blocks.assign(block_rows * block, 0.0f);
-    } else {
-        const auto leaves = static_cast<std::size_t>(std::ranges::count_if(
-            binary.nodes, [](const BinaryNode& node) { return node.count > 0; }));
-        wide.blocks.reserve(leaves * block_rows * block);
-        wide.nodes.reserve(leaves * 7);  // about a node per `width` leaves
-        stack = Collapser(scene, binary, wide, padding_scale * reach).collapse(0).second;
-    }
+    std::vector<BinaryBvh> parts = build_parts(scene, block, [&](double share) {
+        if (report) report(0.8 * share);
+    });
+    const unsigned stack = WideBuilder(scene, reach, std::move(parts), wide).build();
     wide.stack = (stack + 31) / 32 * 32;
     return wide;
 }
@@ -134,8 +243,8 @@ WideBvh build_wide_bvh(const Scene& scene, unsigned width, unsigned block, float
 float reach_of(const Scene& scene, const Camera& camera) {
     float reach = glm::compMax(glm::abs(glm::vec3(camera.origin)) +
                                glm::abs(glm::vec3(camera.right)) + glm::abs(glm::vec3(camera.up)));
-    for (const glm::vec3& vertex : scene.vertices)
-        reach = std::max(reach, glm::compMax(glm::abs(vertex)));
+    scene.for_each_extreme(
+        [&](const glm::vec3& point) { reach = std::max(reach, glm::compMax(glm::abs(point))); });
     return reach;
 }
 

@@ -1,48 +1,35 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <new>
 #include <vector>
 
 #include "bvh/binary.hpp"
+#include "bvh/page_allocator.hpp"
 #include "scene/scene.hpp"
 
 namespace manylight {
 
 /// A BVH for kernels/lib/bvh.h: all children of a node, and all triangles of a leaf's block, lie
-/// side by side in vector lanes.
-/// Allocates whole pages: devices that work on the host's memory need no copy of what lies there.
-template <class T>
-struct PageAllocator {
-    using value_type = T;
-    static constexpr std::align_val_t page{4096};
-    PageAllocator() = default;
-    template <class U>
-    PageAllocator(const PageAllocator<U>&) {}  // NOLINT: allocators convert
-    T* allocate(std::size_t count) {
-        return static_cast<T*>(::operator new((count * sizeof(T) + 4095) / 4096 * 4096, page));
-    }
-    void deallocate(T* memory, std::size_t) { ::operator delete(memory, page); }
-    bool operator==(const PageAllocator&) const = default;
-};
-
+/// side by side in vector lanes. Where a scene has instances, it has two levels: what stands in the
+/// world and the instances are below node 0, and each mesh that these place is below a root of its
+/// own, in its own frame.
 struct WideBvh {
     unsigned width = 0;  // children of a node, lanes
     unsigned block = 0;  // triangles of a block, lanes
     unsigned stack = 0;  // entries that a traversal's stack needs, a multiple of 32
     /// nodes[(7 * node + row) * width + lane]: lower x y z, upper x y z, and the child as an int:
-    /// a node, or ~(block index << 4 | triangles - 1).
+    /// a node, INSTANCE_CHILD + an instance, or ~(block index << 4 | triangles - 1).
     std::vector<float, PageAllocator<float>> nodes;
     /// blocks[(13 * index + row) * block + lane]: vertex 0, vertex 1 - vertex 0, vertex 2 - vertex
     /// 0, each x y z; the triangle's index as an int; the largest coordinate of the edges from
     /// vertex 0 to 1, 0 to 2, 1 to 2.
     std::vector<float, PageAllocator<float>> blocks;
+    std::vector<Instance> instances;  // the scene's, with their roots
 };
 
 /// The wide BVH of a scene; `width` and `block` are 4, 8 or 16. Boxes are padded so that a ray that
 /// starts within `reach` of the origin (the largest absolute coordinate, m) misses none by
-/// rounding.
-/// `report` gets the share done now and then.
+/// rounding. `report` gets the share done now and then.
 [[nodiscard]] WideBvh build_wide_bvh(const Scene& scene, unsigned width, unsigned block,
                                      float reach, const std::function<void(double)>& report = {});
 

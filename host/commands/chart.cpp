@@ -44,6 +44,8 @@ std::string view_options(const ChartArguments& arguments, const LoadedScene& loa
         out += fmt::format(" --shift {},{}", scene.shift.first, scene.shift.second);
     if (scene.emitter_points) out += fmt::format(" --emitter-points {}", *scene.emitter_points);
     if (scene.seconds) out += fmt::format(" --at {}", *scene.seconds);
+    if (scene.storage != MeshStorage::automatic)
+        out += scene.storage == MeshStorage::shared ? " --instances shared" : " --instances copied";
     if (scene.lamp_scale != 1) out += fmt::format(" --lamp-scale {}", scene.lamp_scale);
     if (!scene.device.empty()) out += " --device " + quote(scene.device);
     if (scene.threads > 0) out += fmt::format(" --threads {}", scene.threads);
@@ -153,9 +155,9 @@ int run_chart(const ChartArguments& arguments) {
                       arguments.memory);
     if (!options.quiet)
         fmt::print("{}: {} triangles, {} lights, camera '{}', {} x {}\n{} ({})\n",
-                   loaded.scene.file, loaded.scene.triangle_count(), loaded.scene.lights.size(),
-                   loaded.view.name, loaded.width, loaded.height, device.info().name,
-                   device.info().platform);
+                   loaded.scene.file, loaded.scene.seen_triangle_count(),
+                   loaded.scene.lights.size(), loaded.view.name, loaded.width, loaded.height,
+                   device.info().name, device.info().platform);
     const Chart chart = measure_chart(renderer, options);
     const std::vector<SettingSummary> summaries = summarise(chart);
     const std::vector<ShownImage> shown = choose_images(chart, summaries);
@@ -163,7 +165,7 @@ int run_chart(const ChartArguments& arguments) {
     json facts = chart_json(chart, renderer, summaries, shown,
                             {.scene = {{"file", loaded.scene.file},
                                        {"camera", loaded.view.name},
-                                       {"triangles", loaded.scene.triangle_count()},
+                                       {"triangles", loaded.scene.seen_triangle_count()},
                                        {"lights", loaded.scene.lights.size()},
                                        {"emitter_points", loaded.emitter_points}},
                              .seconds = {{"load", load_seconds}, {"bvh", bvh_seconds}},

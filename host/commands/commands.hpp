@@ -11,6 +11,7 @@
 #include "chart/measure.hpp"
 #include "pipeline/frame.hpp"
 #include "scene/builtin/builtin.hpp"
+#include "scene/gltf.hpp"
 
 namespace manylight {
 
@@ -21,6 +22,7 @@ struct SceneArguments {
     std::optional<unsigned> emitter_points;
     std::optional<double> seconds;  // of the file's first animation; none: at rest
     double lamp_scale = 1;          // of punctual lights' intensities
+    MeshStorage storage = MeshStorage::automatic;
     std::string device;
     unsigned threads = 0;
     unsigned width = 0;                        // 0: from the height and the camera's aspect
@@ -69,8 +71,8 @@ struct BuiltinArguments {
 };
 
 struct BenchArguments {
-    std::string what;      // traversal, stages, or a scene file for both and its loading
-    bool loading = false;  // of a file, alone
+    std::string what;      // traversal, stages, or a scene file for both
+    bool loading = false;  // measure a file's loading instead
     SceneArguments scene;
     std::string mesh;
     std::string view;  // far (the default) or close

@@ -7,7 +7,6 @@
 #include "error.hpp"
 #include "output/progress.hpp"
 #include "output/write_file.hpp"
-#include "scene/gltf.hpp"
 #include "stages/device_scene.hpp"
 
 namespace manylight {
@@ -52,6 +51,7 @@ LoadedScene load(const SceneArguments& arguments, bool quiet) {
         Progress progress("loading", quiet);
         scene = load_scene(arguments.file, {.seconds = arguments.seconds,
                                             .lamp_scale = arguments.lamp_scale,
+                                            .storage = arguments.storage,
                                             .report = [&](double share) { progress.set(share); }});
     }
     for (const std::string& warning : scene.warnings) fmt::print(stderr, "warning: {}\n", warning);

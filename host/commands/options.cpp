@@ -83,6 +83,10 @@ const CLI::Validator power_of_two(
 constexpr std::uint64_t largest_uint = 4294967295;
 constexpr uint most_spp = 1 << 20;
 
+const std::map<std::string, MeshStorage> mesh_storages = {{"auto", MeshStorage::automatic},
+                                                          {"shared", MeshStorage::shared},
+                                                          {"copied", MeshStorage::copied}};
+
 // What a command that renders a scene needs beside its file.
 void add_view(CLI::App& command, SceneArguments& scene, unsigned height = 512) {
     command.add_option("--camera", scene.camera, "camera by name (default: the file's first)");
@@ -98,6 +102,11 @@ void add_view(CLI::App& command, SceneArguments& scene, unsigned height = 512) {
                     "multiply what point, spot and directional lights emit; 0.00146413 takes back "
                     "the 683 lm/W of Blender's export, which emissive surfaces do not get")
         ->check(number(1e-12, 1e12));
+    command
+        .add_option("--instances", scene.storage,
+                    "meshes that stand in several places: shared (stored once), copied (faster to "
+                    "trace) or auto (shared where copies would take more than 256 MiB)")
+        ->transform(CLI::CheckedTransformer(mesh_storages).description(""));
     command.add_option("--device", scene.device,
                        "OpenCL device: number or part of its name, see 'manylight devices'");
     command.add_option("--threads", scene.threads, "processors that a CPU device may use")
@@ -323,15 +332,13 @@ void add_bench(CLI::App& app, std::function<int()>& run) {
     auto arguments = std::make_shared<BenchArguments>();
     CLI::App* command =
         app.add_subcommand("bench", "measure traversal, beside Embree, and the stages of a frame");
-    command
-        ->add_option("what", arguments->what,
-                     "traversal, stages, or a scene file for both and its loading")
+    command->add_option("what", arguments->what, "traversal, stages, or a scene file for both")
         ->required();
     command->add_option("--mesh", arguments->mesh,
                         "traversal, stages: glTF file whose mesh stands in the dragon's room");
     command->add_option("--view", arguments->view, "traversal, stages: far (the default) or close")
         ->check(CLI::IsMember({"far", "close"}));
-    command->add_flag("--loading", arguments->loading, "of a file: how it loads, and no more");
+    command->add_flag("--loading", arguments->loading, "of a file: how fast it loads, instead");
     command->add_option("--json", arguments->json, "file for all figures");
     command->add_option("--rounds", arguments->rounds, "rounds in which all take turns")
         ->check(whole(1, 1000))

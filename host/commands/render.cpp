@@ -83,7 +83,7 @@ FrameResult render_frame(Frame& frame, const RenderArguments& arguments) {
 
 void print_plan(const LoadedScene& loaded, const Plan& plan, const DeviceInfo& device) {
     fmt::print("{}: {} triangles, {} lights, camera '{}'\n", loaded.scene.file,
-               loaded.scene.triangle_count(), loaded.scene.lights.size(), loaded.view.name);
+               loaded.scene.seen_triangle_count(), loaded.scene.lights.size(), loaded.view.name);
     fmt::print("{} ({})\n", device.name, device.platform);
     fmt::print("memory: {}: scene {}, image {}, pixels in work {}", mebibytes(plan.total_bytes()),
                mebibytes(plan.scene_bytes), mebibytes(plan.image_bytes),
@@ -122,7 +122,7 @@ json make_stats(json parameters, const LoadedScene& loaded, const Plan& plan,
     stats["version"] = MANYLIGHT_VERSION;
     stats["device"] = device.info().name;
     stats["platform"] = device.info().platform;
-    stats["triangles"] = loaded.scene.triangle_count();
+    stats["triangles"] = loaded.scene.seen_triangle_count();
     stats["lights"] = loaded.scene.lights.size();
     stats["clusters"] = result.clusters;
     stats["batches"] = plan.batches;

@@ -38,7 +38,7 @@ int run_verify(const VerifyArguments& arguments) {
     options.seed = arguments.seed;
     options.clusters = arguments.clusters;
     fmt::print("{}: {} triangles, {} lights, {} x {} pixels, on {} ({})\n\n", scene.file,
-               loaded.scene.triangle_count(), loaded.scene.lights.size(), loaded.width,
+               loaded.scene.seen_triangle_count(), loaded.scene.lights.size(), loaded.width,
                loaded.height, device.info().name, device.info().platform);
     fmt::print("{:<32} {:>8} {:>10} {:>10}  {:<6} {}\n", "stage", "items", "borderline", "largest",
                "", "tolerance");

@@ -20,7 +20,8 @@ ContentHash& ContentHash::add(const Scene& scene) {
         (add(std::as_bytes(std::span(values))), ...);
     };
     add_all(scene.vertices, scene.vertex_normals, scene.indices, scene.triangle_materials);
-    add_all(scene.materials, scene.lights, scene.cell_areas, scene.maps, scene.textures);
+    add_all(scene.instances, scene.materials, scene.lights, scene.cell_areas, scene.maps,
+            scene.textures);
     add_all(scene.texels, scene.colors, scene.tangents, scene.alpha_of, scene.alpha_triangles);
     for (const auto& set : scene.coordinates) add_all(set);
     return *this;

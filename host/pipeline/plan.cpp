@@ -53,6 +53,7 @@ void check_buffers(const DeviceInfo& device, const Scene& scene, const WideBvh& 
         {"triangles", bytes_of(bvh.blocks)},
         {"vertices", bytes_of(scene.vertices)},
         {"indices", bytes_of(scene.indices)},
+        {"instances", bytes_of(scene.instances)},
         {"lights", bytes_of(scene.lights)},
         {"light tree", light_tree},
         {"textures", bytes_of(scene.texels)},
@@ -100,7 +101,8 @@ Plan make_plan(const DeviceInfo& device, const Scene& scene, const WideBvh& bvh,
     plan.scene_bytes = bytes_of(bvh.nodes) + bytes_of(bvh.blocks) + bytes_of(scene.vertices) +
                        bytes_of(scene.vertex_normals) + bytes_of(scene.indices) +
                        bytes_of(scene.triangle_materials) + bytes_of(scene.materials) +
-                       bytes_of(scene.lights) + bytes_of(scene.cell_areas) + texture_bytes(scene);
+                       bytes_of(scene.lights) + bytes_of(scene.cell_areas) +
+                       bytes_of(scene.instances) + texture_bytes(scene);
     const std::size_t light_tree = sampler.uses_tree() ? 2 * sizeof(LightNode) * lights : 0;
     plan.scene_bytes += light_tree;
     plan.image_bytes = std::size_t{options.width} * options.height *

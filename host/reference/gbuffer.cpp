@@ -3,6 +3,7 @@
 
 #include "reference/random.hpp"
 #include "reference/textures.hpp"
+#include "reference/triangle.hpp"
 
 namespace manylight::reference {
 
@@ -39,30 +40,25 @@ Surface surface_at(const Scene& scene, const Ray& ray, const std::optional<Hit>&
     Surface surface{};
     surface.position.w = -1;
     if (!hit) return surface;
-    glm::dvec3 v[3];
+    const Triangle triangle(scene, hit->triangle);
     glm::dvec3 smooth(0);
     const double weights[3] = {1 - hit->u - hit->v, hit->u, hit->v};
-    double extent = 0;
-    for (int k = 0; k < 3; ++k) {
-        const uint index = scene.indices[3 * std::size_t{hit->triangle} + k];
-        v[k] = scene.vertices[index];
-        if (!scene.vertex_normals.empty())
-            smooth += weights[k] * glm::dvec3(scene.vertex_normals[index]);
-        for (int axis = 0; axis < 3; ++axis) extent = std::max(extent, std::abs(v[k][axis]));
-    }
-    glm::dvec3 geometric = glm::normalize(glm::cross(v[1] - v[0], v[2] - v[0]));
+    for (int k = 0; k < 3; ++k) smooth += weights[k] * triangle.normal(k);
+    glm::dvec3 geometric = glm::normalize(triangle.face());
     const bool front = glm::dot(geometric, ray.direction) < 0;
     if (!front) geometric = -geometric;
     glm::dvec3 normal = smooth == glm::dvec3(0) ? geometric : glm::normalize(smooth);
     if (glm::dot(normal, geometric) < 0) normal = -normal;
     normal = normal_at(scene, ray, *hit, normal);
-    const glm::dvec3 position = v[0] + hit->u * (v[1] - v[0]) + hit->v * (v[2] - v[0]);
+    const glm::dvec3 v0 = triangle.corner(0);
+    const glm::dvec3 position =
+        v0 + hit->u * (triangle.corner(1) - v0) + hit->v * (triangle.corner(2) - v0);
     surface.position = float4(glm::vec3(position), static_cast<float>(hit->t));
     surface.normal = float4(glm::vec3(normal), 0);
-    surface.geometric = float4(glm::vec3(geometric),
-                               static_cast<float>(static_cast<double>(OFFSET_SCALE) * extent));
+    surface.geometric =
+        float4(glm::vec3(geometric), static_cast<float>(double{OFFSET_SCALE} * triangle.extent()));
     surface.triangle = hit->triangle;
-    surface.material = scene.triangle_materials[hit->triangle];
+    surface.material = triangle.material();
     surface.shading = surface.material;
     surface.front = front;
     return surface;

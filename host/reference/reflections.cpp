@@ -6,6 +6,7 @@
 
 #include "reference/random.hpp"
 #include "reference/textures.hpp"
+#include "reference/triangle.hpp"
 
 namespace manylight::reference {
 namespace {
@@ -19,13 +20,10 @@ glm::dvec3 reflected(const Scene& scene, const Camera& camera, const Surface& su
     const double cosine = glm::dot(normal, ray.direction);
     if (cosine <= 0 || glm::dot(glm::dvec3(surface.geometric), ray.direction) <= 0 || !hit)
         return glm::dvec3(0);
-    const double area = scene.cell_areas[hit->triangle];
+    const Triangle triangle(scene, hit->triangle);
+    const double area = triangle.cell_area();
     if (area == 0) return glm::dvec3(0);
-    glm::dvec3 v[3];
-    for (int k = 0; k < 3; ++k)
-        v[k] = scene.vertices[scene.indices[3 * std::size_t{hit->triangle} + k]];
-    const glm::dvec3 face = glm::normalize(glm::cross(v[1] - v[0], v[2] - v[0]));
-    const double emitted = -glm::dot(face, ray.direction);
+    const double emitted = -glm::dot(glm::normalize(triangle.face()), ray.direction);
     const float4 emission = material_at(scene, {ray.origin, ray.direction}, *hit).emission;
     if (emitted < 0 && emission.w == 0) return glm::dvec3(0);
     const double solid_angle = area * std::abs(emitted) / (hit->t * hit->t);
@@ -85,8 +83,9 @@ Reflection reflection(const Scene& scene, const Tracer& tracer, const Camera& ca
             std::max({largest, std::abs(position[axis]), std::abs(double{camera.origin[axis]})});
     // What the value comes from: cells of one material and area emit alike.
     const auto source = [&](const std::optional<Hit>& h) {
-        return h ? std::pair(scene.triangle_materials[h->triangle], scene.cell_areas[h->triangle])
-                 : std::pair(~0u, 0.f);
+        if (!h) return std::pair(~0u, 0.0);
+        const Triangle triangle(scene, h->triangle);
+        return std::pair(triangle.material(), triangle.cell_area());
     };
     for (Ray moved : Tracer::neighbours(ray, 16 * epsilon * largest)) {
         moved.direction = glm::normalize(moved.direction);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "reference/triangle.hpp"
 #include "scene/textures.hpp"
 
 namespace manylight::reference {
@@ -68,29 +69,36 @@ glm::dmat2 weight_differentials(const glm::dvec3 v[3], const Ray& ray, double t)
 class Point {
   public:
     Point(const Scene& scene, const Ray& ray, const Hit& hit)
-        : scene_(scene),
-          ray_(ray),
-          hit_(hit),
-          material_(scene.triangle_materials[hit.triangle]),
-          corner_(&scene.indices[3 * std::size_t{hit.triangle}]) {}
+        : scene_(scene), ray_(ray), hit_(hit), triangle_(scene, hit.triangle) {}
 
-    [[nodiscard]] glm::dvec3 vertex(int k) const { return scene_.vertices[corner_[k]]; }
+    [[nodiscard]] const Triangle& triangle() const { return triangle_; }
 
-    [[nodiscard]] glm::dvec4 interpolate(const std::vector<float4>& values) const {
-        return (1 - hit_.u - hit_.v) * glm::dvec4(values[corner_[0]]) +
-               hit_.u * glm::dvec4(values[corner_[1]]) + hit_.v * glm::dvec4(values[corner_[2]]);
+    [[nodiscard]] glm::dvec4 interpolate(const glm::dvec4& v0, const glm::dvec4& v1,
+                                         const glm::dvec4& v2) const {
+        return (1 - hit_.u - hit_.v) * v0 + hit_.u * v1 + hit_.v * v2;
+    }
+
+    [[nodiscard]] glm::dvec4 color() const {
+        const std::vector<float4>& colors = scene_.colors;
+        if (colors.empty()) return glm::dvec4(1);
+        return interpolate(colors[triangle_.vertex(0)], colors[triangle_.vertex(1)],
+                           colors[triangle_.vertex(2)]);
+    }
+
+    [[nodiscard]] glm::dvec4 tangent() const {
+        return interpolate(triangle_.tangent(0), triangle_.tangent(1), triangle_.tangent(2));
     }
 
     /// The material's map of a kind; null if it has none.
     [[nodiscard]] const TextureMap* map(MapKind kind) const {
         if (scene_.maps.empty()) return nullptr;
-        const TextureMap& map = scene_.maps[MAP_KIND_COUNT * material_ + kind];
+        const TextureMap& map = scene_.maps[MAP_KIND_COUNT * triangle_.material() + kind];
         return map.texture == NO_TEXTURE ? nullptr : &map;
     }
 
     /// Where corner k is on a map's texture.
     [[nodiscard]] glm::dvec2 corner(const TextureMap& map, int k) const {
-        const glm::dvec3 st(scene_.coordinates[map.set][corner_[k]], 1);
+        const glm::dvec3 st(scene_.coordinates[map.set][triangle_.vertex(k)], 1);
         return {glm::dot(glm::dvec3(map.u), st), glm::dot(glm::dvec3(map.v), st)};
     }
 
@@ -104,7 +112,7 @@ class Point {
         const TextureMap* map = this->map(kind);
         if (!map) return glm::dvec4(1);
         const glm::dmat2 change = corner_change(*map);
-        const glm::dvec3 v[3] = {vertex(0), vertex(1), vertex(2)};
+        const glm::dvec3 v[3] = {triangle_.corner(0), triangle_.corner(1), triangle_.corner(2)};
         const double area =
             std::abs(glm::determinant(change * weight_differentials(v, ray_, hit_.t)));
         return sample_texture(scene_, scene_.textures[map->texture],
@@ -115,8 +123,7 @@ class Point {
     const Scene& scene_;
     const Ray& ray_;
     const Hit& hit_;
-    uint material_;
-    const uint* corner_;
+    Triangle triangle_;
 };
 
 }  // namespace
@@ -137,15 +144,18 @@ glm::dvec4 sample_texture(const Scene& scene, const Texture& t, const glm::dvec2
 }
 
 Material material_at(const Scene& scene, const Ray& ray, const Hit& hit) {
-    Material out = scene.materials[scene.triangle_materials[hit.triangle]];
     const Point point(scene, ray, hit);
-    glm::dvec3 color(point.value_of(MAP_BASE_COLOR));
-    if (!scene.colors.empty()) color *= glm::dvec3(point.interpolate(scene.colors));
+    Material out = scene.materials[point.triangle().material()];
+    const glm::dvec3 color(point.value_of(MAP_BASE_COLOR) * point.color());
     const glm::dvec4 polish = point.value_of(MAP_METALLIC_ROUGHNESS);
     const glm::dvec3 emission = glm::dvec3(out.emission) * glm::dvec3(point.value_of(MAP_EMISSION));
     const glm::dvec3 base = glm::dvec3(out.base_color) * (out.unlit ? glm::dvec3(1) : color);
     out.base_color = float4(glm::vec3(base), out.base_color.w * polish.b);
     out.emission = float4(glm::vec3(out.unlit ? emission * color : emission), out.emission.w);
+    out.specular *= static_cast<float>(point.value_of(MAP_SPECULAR).a);
+    const glm::dvec3 reflectance =
+        glm::dvec3(out.reflectance) * glm::dvec3(point.value_of(MAP_SPECULAR_COLOR));
+    out.reflectance = float4(glm::vec3(glm::min(reflectance, 1.0)), 0);
     const double root = std::sqrt(double{out.roughness}) * polish.g;
     out.roughness = static_cast<float>(std::max<double>(root * root, SMALLEST_ALPHA));
     return out;
@@ -154,9 +164,8 @@ Material material_at(const Scene& scene, const Ray& ray, const Hit& hit) {
 double alpha_at(const Scene& scene, const Hit& hit) {
     const Ray no_pixel{glm::dvec3(0), glm::dvec3(1)};
     const Point point(scene, no_pixel, hit);
-    double alpha = scene.materials[scene.triangle_materials[hit.triangle]].alpha;
-    if (!scene.colors.empty()) alpha *= point.interpolate(scene.colors).a;
-    return alpha * point.value_of(MAP_BASE_COLOR).a;
+    const double alpha = scene.materials[point.triangle().material()].alpha;
+    return alpha * point.color().a * point.value_of(MAP_BASE_COLOR).a;
 }
 
 glm::dvec3 normal_at(const Scene& scene, const Ray& ray, const Hit& hit, const glm::dvec3& normal) {
@@ -165,17 +174,16 @@ glm::dvec3 normal_at(const Scene& scene, const Ray& ray, const Hit& hit, const g
     if (!map) return normal;
     const glm::dvec3 in = (2.0 * glm::dvec3(point.value_of(MAP_NORMAL)) - 1.0) *
                           glm::dvec3(map->scale, map->scale, 1);
-    const glm::dvec3 face =
-        glm::cross(point.vertex(1) - point.vertex(0), point.vertex(2) - point.vertex(0));
+    const Triangle& triangle = point.triangle();
+    const glm::dvec3 face = triangle.face();
     const double side = glm::dot(face, ray.direction) < 0 ? 1 : -1;
-    glm::dvec4 tangent(0);
-    if (!scene.tangents.empty()) tangent = point.interpolate(scene.tangents);
+    glm::dvec4 tangent = point.tangent();
     if (glm::dvec3(tangent) == glm::dvec3(0)) {
         // The columns of the inverse of d(u, v) / d(weights) are d(weights) / du and / dv.
         const glm::dmat2 inverse = glm::inverse(point.corner_change(*map));
         const auto along = [&](int k) {
-            return inverse[k][0] * (point.vertex(1) - point.vertex(0)) +
-                   inverse[k][1] * (point.vertex(2) - point.vertex(0));
+            return inverse[k][0] * (triangle.corner(1) - triangle.corner(0)) +
+                   inverse[k][1] * (triangle.corner(2) - triangle.corner(0));
         };
         // glTF's y is up, and v down.
         const bool mirrored = glm::dot(glm::cross(along(0), -along(1)), face) < 0;

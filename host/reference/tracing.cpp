@@ -8,13 +8,10 @@
 
 #include "reference/random.hpp"
 #include "reference/textures.hpp"
+#include "reference/triangle.hpp"
 
 namespace manylight::reference {
 namespace {
-
-glm::dvec3 corner(const Scene& scene, uint triangle, int k) {
-    return scene.vertices[scene.indices[3 * std::size_t{triangle} + k]];
-}
 
 // Where the segment is inside a box, by slabs; boxes are closed.
 bool meets_box(const Ray& ray, const glm::dvec3& lower, const glm::dvec3& upper, double end) {
@@ -37,8 +34,11 @@ bool meets_box(const Ray& ray, const glm::dvec3& lower, const glm::dvec3& upper,
 
 }  // namespace
 
-Tracer::Tracer(const Scene& scene) : scene_(scene), order_(scene.triangle_count()) {
+Tracer::Tracer(const Scene& scene) : scene_(scene), order_(scene.own_triangle_count()) {
     std::iota(order_.begin(), order_.end(), 0u);
+    for (const Instance& in : scene.instances)
+        for (uint k = 0; k < scene.shared_meshes[in.mesh].triangle_count; ++k)
+            order_.push_back(in.first + k);
     if (!order_.empty()) root_ = build(0, static_cast<uint>(order_.size()));
 }
 
@@ -46,16 +46,17 @@ int Tracer::build(uint begin, uint end) {
     Node node{glm::dvec3(1e300), glm::dvec3(-1e300), begin, end};
     for (uint i = begin; i < end; ++i)
         for (int k = 0; k < 3; ++k) {
-            node.lower = glm::min(node.lower, corner(scene_, order_[i], k));
-            node.upper = glm::max(node.upper, corner(scene_, order_[i], k));
+            const glm::dvec3 corner = Triangle(scene_, order_[i]).corner(k);
+            node.lower = glm::min(node.lower, corner);
+            node.upper = glm::max(node.upper, corner);
         }
     if (end - begin > 4) {
         const glm::dvec3 size = node.upper - node.lower;
         const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
         const uint middle = begin + (end - begin) / 2;
         const auto centre = [&](uint t) {
-            return corner(scene_, t, 0)[axis] + corner(scene_, t, 1)[axis] +
-                   corner(scene_, t, 2)[axis];
+            const Triangle triangle(scene_, t);
+            return triangle.corner(0)[axis] + triangle.corner(1)[axis] + triangle.corner(2)[axis];
         };
         std::nth_element(order_.begin() + begin, order_.begin() + middle, order_.begin() + end,
                          [&](uint a, uint b) { return centre(a) < centre(b); });
@@ -68,9 +69,10 @@ int Tracer::build(uint begin, uint end) {
 
 // Moeller and Trumbore (1997).
 void Tracer::test(uint triangle, const Ray& ray, std::optional<Hit>& best) const {
-    const glm::dvec3 v0 = corner(scene_, triangle, 0);
-    const glm::dvec3 e1 = corner(scene_, triangle, 1) - v0;
-    const glm::dvec3 e2 = corner(scene_, triangle, 2) - v0;
+    const Triangle tested(scene_, triangle);
+    const glm::dvec3 v0 = tested.corner(0);
+    const glm::dvec3 e1 = tested.corner(1) - v0;
+    const glm::dvec3 e2 = tested.corner(2) - v0;
     const glm::dvec3 p = glm::cross(ray.direction, e2);
     const double determinant = glm::dot(e1, p);
     if (determinant == 0) return;
@@ -87,7 +89,7 @@ void Tracer::test(uint triangle, const Ray& ray, std::optional<Hit>& best) const
 
 // What is partly there is so by chance, but for one ray always alike.
 bool Tracer::is_there(const Ray& ray, const Hit& hit) const {
-    const float cutoff = scene_.materials[scene_.triangle_materials[hit.triangle]].cutoff;
+    const float cutoff = scene_.materials[Triangle(scene_, hit.triangle).material()].cutoff;
     if (cutoff == 0) return true;
     const double alpha = alpha_at(scene_, hit);
     if (cutoff > 0) return alpha >= cutoff;

@@ -15,10 +15,16 @@
 
 namespace manylight {
 
+/// How meshes are stored that stand in several places: once with instances where that saves memory,
+/// a copy for each place (faster to trace), or, `automatic`, once where copies would take much
+/// more.
+enum class MeshStorage { automatic, shared, copied };
+
 struct LoadOptions {
     std::optional<double> seconds = {};  // the moment of the first animation; none: all at rest
     double lamp_scale = 1;               // of punctual lights' intensities
-    std::size_t most_bytes = 0;          // that triangles may need; 0: what the machine has
+    MeshStorage storage = MeshStorage::automatic;
+    std::size_t most_bytes = 0;  // that triangles, or textures, may need; 0: what the machine has
     std::function<void(double)> report = {};  // gets the share done now and then
 };
 

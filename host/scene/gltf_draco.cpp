@@ -151,7 +151,6 @@ class Primitive {
                    components);
         if (accessor.count != vertices_)
             refuse("{} has {} values for {} vertices", name, accessor.count, vertices_);
-        std::vector<unsigned char> out;
         switch (accessor.componentType) {
             case TINYGLTF_COMPONENT_TYPE_BYTE:
                 return provide<std::int8_t>(*attribute, components, name, index);

@@ -25,8 +25,9 @@ constexpr float farthest = 1e9f;    // m
 // bounds while the BVH is built and place in it.
 constexpr double vertex_bytes = 24;
 constexpr double triangle_bytes = 96;
-constexpr double instance_bytes = 128;
-constexpr double most_steps = 4e9;  // a minute or two
+constexpr double instance_bytes = 512;       // its node above, too
+constexpr double worth_sharing = 256 << 20;  // bytes of copies
+constexpr double most_steps = 4e9;           // a minute or two
 
 float number(const tinygltf::Value& object, const char* key, double otherwise) {
     if (!object.IsObject() || !object.Has(key)) return static_cast<float>(otherwise);
@@ -58,13 +59,17 @@ class Loader {
 
     Scene load() {
         find_nodes();
-        check_memory(options_.most_bytes != 0 ? options_.most_bytes : machine_memory());
         for (const tinygltf::Material& material : model_.materials) add_material(material);
         scene_.materials.push_back(default_material());
         scene_.material_names.emplace_back();
-        coordinate_sets_ = load_textures(file_, model_, used_materials(), scene_);
+        choose_shared();
+        count_all();
+        check_size();
+        coordinate_sets_ = load_textures(file_, model_, used_materials(), most_bytes(), scene_);
+        limit_reflectance();
         decode_meshes();
         for (const int node : nodes_) visit_node(node);
+        add_shared_meshes();
         find_alpha(scene_);
         note_what_is_not_rendered();
         if (!has_normals_) scene_.vertex_normals = {};
@@ -107,6 +112,15 @@ class Loader {
         scene_.material_names.push_back(in.name);
     }
 
+    // To all light that there is, where no texture is still to be multiplied in.
+    void limit_reflectance() {
+        for (std::size_t i = 0; i < scene_.materials.size(); ++i)
+            if (!has_map(scene_, i, MAP_SPECULAR_COLOR))
+                for (int c = 0; c < 3; ++c)
+                    scene_.materials[i].reflectance[c] =
+                        std::min(scene_.materials[i].reflectance[c], 1.f);
+    }
+
     // At normal incidence; an index of 0 reflects everything.
     static float4 reflectance(const tinygltf::Value& ior, const tinygltf::Value& specular) {
         float4 f0(glm::vec3(USUAL_REFLECTANCE), 0);
@@ -118,7 +132,7 @@ class Loader {
         if (!specular.Has("specularColorFactor")) return f0;
         for (int c = 0; c < 3; ++c) {
             const auto& factor = specular.Get("specularColorFactor").Get(c);
-            f0[c] = std::min(f0[c] * static_cast<float>(factor.GetNumberAsDouble()), 1.f);
+            f0[c] *= static_cast<float>(factor.GetNumberAsDouble());
         }
         return f0;
     }
@@ -183,7 +197,8 @@ class Loader {
         for (const int mesh : meshes) decode_draco(file_, model_, mesh, accessors_);
     }
 
-    static std::size_t machine_memory() {
+    [[nodiscard]] std::size_t most_bytes() const {
+        if (options_.most_bytes != 0) return options_.most_bytes;
         return static_cast<std::size_t>(sysconf(_SC_PHYS_PAGES)) *
                static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
     }
@@ -203,43 +218,113 @@ class Loader {
         return steps;
     }
 
-    // Refuses scenes whose triangles, instances counted one by one, cannot fit: a file of a
-    // kilobyte may ask for any number of them.
-    void check_memory(std::size_t most_bytes) {
-        double vertices = 0;
-        double triangles = 0;
-        double instance_count = 0;
-        double steps = 0;  // of the loops that read them
-        for (const int node : nodes_) {
-            if (model_.nodes[node].mesh < 0) continue;
-            const auto instances = static_cast<double>(count_instances(file_, node));
-            instance_count = std::max(instance_count, instances);
-            steps += instances * steps_of(node);
-            for (const auto& primitive : model_.meshes[model_.nodes[node].mesh].primitives) {
-                if (!is_rendered(primitive)) continue;
-                const std::size_t count =
-                    model_.accessors[primitive.attributes.at("POSITION")].count;
-                const std::size_t corners =
-                    primitive.indices < 0 ? count : model_.accessors[primitive.indices].count;
-                vertices += instances * static_cast<double>(count);
-                triangles += instances *
-                             static_cast<double>(is_list(primitive.mode) ? corners / 3 : corners);
-            }
+    struct Size {
+        double vertices = 0, triangles = 0;
+        [[nodiscard]] double bytes() const {
+            return vertices * vertex_bytes + triangles * triangle_bytes;
         }
-        whole_ = vertices + triangles;
+    };
+
+    [[nodiscard]] Size size_of(int mesh) const {
+        Size size;
+        for (const auto& primitive : model_.meshes[mesh].primitives) {
+            if (!is_rendered(primitive)) continue;
+            const std::size_t count = model_.accessors[primitive.attributes.at("POSITION")].count;
+            const std::size_t corners =
+                primitive.indices < 0 ? count : model_.accessors[primitive.indices].count;
+            size.vertices += static_cast<double>(count);
+            size.triangles += static_cast<double>(is_list(primitive.mode) ? corners / 3 : corners);
+        }
+        return size;
+    }
+
+    [[nodiscard]] int material_of(const tinygltf::Primitive& primitive) const {
+        return primitive.material >= 0 ? primitive.material
+                                       : static_cast<int>(model_.materials.size());
+    }
+
+    // Whether it is the same wherever it stands, but for the transform, and gives no light.
+    [[nodiscard]] bool is_rigid_and_dark(int mesh) const {
+        return std::ranges::none_of(
+            model_.meshes[mesh].primitives, [&](const tinygltf::Primitive& p) {
+                const Material& m = scene_.materials[material_of(p)];
+                return !p.targets.empty() ||
+                       (glm::vec3(m.emission) != glm::vec3(0) && m.unlit == 0);
+            });
+    }
+
+    // Which meshes are stored once: those of which copies take more than instances, if all such
+    // copies together take much.
+    void choose_shared() {
+        is_shared_.assign(model_.meshes.size(), false);
+        if (options_.storage == MeshStorage::copied) return;
+        std::vector<double> places(model_.meshes.size(), 0);
+        std::vector<bool> skinned(model_.meshes.size(), false);
+        for (const int node : nodes_) {
+            const int mesh = model_.nodes[node].mesh;
+            if (mesh < 0) continue;
+            places[mesh] += static_cast<double>(count_instances(file_, node));
+            if (model_.nodes[node].skin >= 0) skinned[mesh] = true;
+        }
+        std::vector<bool> chosen = is_shared_;
+        double all_saved = 0;
+        for (std::size_t mesh = 0; mesh < places.size(); ++mesh) {
+            if (places[mesh] < 2 || skinned[mesh]) continue;
+            const double saved = (places[mesh] - 1) * size_of(static_cast<int>(mesh)).bytes() -
+                                 places[mesh] * instance_bytes;
+            if (saved <= 0 || !is_rigid_and_dark(static_cast<int>(mesh))) continue;
+            chosen[mesh] = true;
+            all_saved += saved;
+        }
+        if (options_.storage == MeshStorage::shared || all_saved > worth_sharing)
+            is_shared_ = chosen;
+    }
+
+    // Finds how much is to be stored and computed: `copies` of a node's mesh.
+    void count_copies(int node, double copies) {
+        const Size size = size_of(model_.nodes[node].mesh);
+        stored_.vertices += copies * size.vertices;
+        stored_.triangles += copies * size.triangles;
+        steps_ += copies * steps_of(node);
+    }
+
+    void count_all() {
+        std::vector<bool> counted(model_.meshes.size(), false);
+        for (const int node : nodes_) {
+            const int mesh = model_.nodes[node].mesh;
+            if (mesh < 0) continue;
+            const auto places = static_cast<double>(count_instances(file_, node));
+            steps_ += places;
+            most_places_ = std::max(most_places_, places);
+            if (!is_shared_[mesh]) {
+                count_copies(node, places);
+                continue;
+            }
+            if (!counted[mesh]) count_copies(node, 1);
+            counted[mesh] = true;
+            instances_ += places;
+        }
+        whole_ = stored_.vertices + stored_.triangles;
+    }
+
+    // Refuses scenes that cannot fit or take too long to read: a file of a kilobyte may ask for any
+    // number of instances.
+    void check_size() const {
+        const auto most = static_cast<double>(most_bytes());
+        const double bytes = stored_.bytes() + instances_ * instance_bytes +
+                             most_places_ * double{sizeof(glm::dmat4)};
         constexpr double gib = 1 << 30;
-        const double bytes =
-            vertices * vertex_bytes + triangles * triangle_bytes + instance_count * instance_bytes;
-        if (bytes > static_cast<double>(most_bytes))
+        if (bytes > most)
             throw InputError(
-                "{}: its {:.0f} triangles, instances counted one by one, need at least {:.1f} GiB, "
-                "and there are {:.1f} GiB of memory",
-                scene_.file, triangles, bytes / gib, static_cast<double>(most_bytes) / gib);
-        if (steps > most_steps)
+                "{}: its {:.0f} triangles and {:.0f} instances that share them need at least "
+                "{:.1f} "
+                "GiB, and there are {:.1f} GiB of memory",
+                scene_.file, stored_.triangles, instances_, bytes / gib, most / gib);
+        if (steps_ > most_steps)
             throw InputError(
                 "{}: its instances, joints and morph targets make {:.3g} steps to load: more than "
                 "{:.3g}",
-                scene_.file, steps, most_steps);
+                scene_.file, steps_, most_steps);
     }
 
     // One more vertex or triangle is there.
@@ -269,11 +354,84 @@ class Loader {
     // A node's mesh wherever it is: a skinned one where its joints are, whatever the node.
     void add_instances(int node) {
         const bool skinned = model_.nodes[node].skin >= 0;
+        const int mesh = model_.nodes[node].mesh;
+        std::vector<glm::dmat4> copies;
         for (const glm::dmat4& instance : mesh_instances(file_, node, accessors_)) {
             const glm::dmat4 to_world = (skinned ? glm::dmat4(1) : pose_.to_world(node)) * instance;
             check_transform(to_world, node);
-            add_mesh(node, to_world);
+            if (!is_shared_[mesh] || !is_well_conditioned(glm::dmat3(to_world))) {
+                copies.push_back(to_world);
+                continue;
+            }
+            scene_.instances.push_back(make_instance(to_world));
+            scene_.instances.back().mesh = static_cast<std::uint32_t>(mesh);  // the file's, for now
         }
+        if (is_shared_[mesh] && !copies.empty()) {  // which nobody has counted yet
+            count_copies(node, static_cast<double>(copies.size()));
+            check_size();
+        }
+        for (const glm::dmat4& to_world : copies) add_mesh(node, to_world);
+    }
+
+    // Whether single precision can take rays to a mesh's frame and normals back.
+    static bool is_well_conditioned(const glm::dmat3& m) {
+        const auto norm = [](const glm::dmat3& a) {
+            return std::sqrt(glm::dot(a[0], a[0]) + glm::dot(a[1], a[1]) + glm::dot(a[2], a[2]));
+        };
+        constexpr double most = 100;  // 3 where nothing is distorted
+        const glm::dmat3 inverse = glm::inverse(m);
+        return norm(m) * norm(inverse) < most && norm(m) < 1e6 && norm(inverse) < 1e6;
+    }
+
+    // Stores the meshes that stand in several places, behind all others, and completes their
+    // instances.
+    void add_shared_meshes() {
+        std::vector<std::uint32_t> numbers(model_.meshes.size(), ~0u);  // in the scene
+        for (const int node : nodes_) {
+            const int mesh = model_.nodes[node].mesh;
+            if (mesh < 0 || !is_shared_[mesh] || numbers[mesh] != ~0u) continue;
+            numbers[mesh] = static_cast<std::uint32_t>(scene_.shared_meshes.size());
+            const std::size_t vertices = scene_.vertices.size();
+            SharedMesh shared{};
+            shared.first_triangle = static_cast<std::uint32_t>(scene_.triangle_count());
+            shared.first_vertex = static_cast<std::uint32_t>(vertices);
+            add_mesh(node, glm::dmat4(1));
+            shared.triangle_count =
+                static_cast<std::uint32_t>(scene_.triangle_count() - shared.first_triangle);
+            for (std::size_t v = vertices; v < scene_.vertices.size(); ++v)
+                shared.bounds.add(scene_.vertices[v]);
+            scene_.shared_meshes.push_back(shared);
+        }
+        std::size_t next = scene_.triangle_count();
+        for (Instance& in : scene_.instances) {
+            const std::uint32_t mesh = in.mesh;
+            in.mesh = numbers[mesh];
+            const SharedMesh& shared = scene_.shared_meshes[in.mesh];
+            in.stored = shared.first_triangle;
+            in.first = static_cast<std::uint32_t>(next);
+            next += shared.triangle_count;
+            if (next >= ~0u)
+                throw InputError("{}: more than 2^32 triangles, instances counted one by one",
+                                 scene_.file);
+            for (int k = 0; k < 8; ++k)
+                if (!(glm::compMax(glm::abs(point_to_world(in, shared.bounds.corner(k)))) <=
+                      farthest))
+                    throw InputError(
+                        "{}: meshes[{}]: an instance is out of range in the world: more than {}",
+                        scene_.file, mesh, farthest);
+        }
+    }
+
+    static Instance make_instance(const glm::dmat4& to_world) {
+        Instance in{};
+        const glm::mat4 rows(glm::transpose(to_world));
+        for (int k = 0; k < 3; ++k) in.to_world[k] = rows[k];
+        const glm::dmat3 linear = glm::transpose(
+            glm::dmat3(glm::dvec3(rows[0]), glm::dvec3(rows[1]), glm::dvec3(rows[2])));
+        const glm::dmat3 inverse = glm::transpose(glm::inverse(linear));
+        for (int k = 0; k < 3; ++k) in.to_object[k] = float4(glm::vec3(inverse[k]), 0);
+        in.mirrored = glm::determinant(linear) < 0 ? 1 : 0;
+        return in;
     }
 
     void add_camera(int index, const glm::dmat4& to_world) {
@@ -396,8 +554,7 @@ class Loader {
                     "{}",
                     scene_.file, where, v, farthest);
         }
-        const int material = primitive.material >= 0 ? primitive.material
-                                                     : static_cast<int>(model_.materials.size());
+        const int material = material_of(primitive);
         add_coordinates(primitive, material, count, where);
         add_tangents(primitive, material, node, transform, count, where);
         add_colors(primitive, count, where);
@@ -578,15 +735,6 @@ class Loader {
     }
 
     void note_what_is_not_rendered() {
-        std::size_t textured = 0;
-        for (const tinygltf::Material& m : model_.materials) {
-            const auto& specular = extension(m.extensions, "KHR_materials_specular");
-            const bool specular_texture =
-                specular.Has("specularTexture") || specular.Has("specularColorTexture");
-            textured += specular_texture;
-        }
-        warn(textured,
-             "materials have specular textures, which are not rendered; their factors are");
         if (pose_.is_at_rest())
             warn(model_.animations.size(),
                  "animations are at rest; --at SECONDS shows a moment of the first");
@@ -606,7 +754,12 @@ class Loader {
     Scene scene_;
     std::vector<int> nodes_;
     std::vector<unsigned> coordinate_sets_;  // [set of Scene::coordinates] n of TEXCOORD_n
-    double whole_ = 0;                       // vertices and triangles, instances counted one by one
+    std::vector<bool> is_shared_;            // [mesh] stored once
+    Size stored_;                            // vertices and triangles, or what will be
+    double instances_ = 0;                   // that share these
+    double most_places_ = 0;                 // of a node, which are read at once
+    double steps_ = 0;                       // of the loops that read them
+    double whole_ = 0;                       // vertices and triangles that will be stored
     std::size_t done_ = 0;                   // of these
     bool has_normals_ = false;
     std::size_t lines_and_points_ = 0;

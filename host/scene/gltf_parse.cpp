@@ -23,17 +23,17 @@ bool has_images_by_name(const nlohmann::json& json) {
                                [](const nlohmann::json& image) { return image.contains("uri"); });
 }
 
-bool has_plus(const nlohmann::json& buffer) {
+bool uri_has_plus(const nlohmann::json& buffer) {
     return buffer.contains("uri") &&
            !buffer["uri"].get_ref<const std::string&>().starts_with("data:") &&
            buffer["uri"].get_ref<const std::string&>().find('+') != std::string::npos;
 }
 
 // The library takes a plus for a blank.
-bool has_plus(const GltfFile& file) {
+bool any_uri_has_plus(const GltfFile& file) {
     return file.json.contains("buffers") &&
            std::ranges::any_of(file.json["buffers"],
-                               [](const nlohmann::json& buffer) { return has_plus(buffer); });
+                               [](const nlohmann::json& buffer) { return uri_has_plus(buffer); });
 }
 
 void escape_plus(std::string& uri) {
@@ -63,7 +63,7 @@ std::vector<unsigned char> without_refused(const GltfFile& file) {
         for (nlohmann::json& buffer : json["buffers"])
             if (is_fallback_buffer(buffer))
                 buffer = {{"byteLength", 1}, {"uri", "data:application/octet-stream;base64,AA=="}};
-            else if (has_plus(buffer))
+            else if (uri_has_plus(buffer))
                 escape_plus(buffer["uri"].get_ref<std::string&>());
     }
     if (has_accessors_without_view(file))
@@ -98,7 +98,7 @@ tinygltf::Model parse_gltf(const GltfFile& file) {
     std::string error;
     std::string warning;
     std::vector<unsigned char> changed;
-    if (has_images_by_name(file.json) || has_fallback_buffers(file) || has_plus(file) ||
+    if (has_images_by_name(file.json) || has_fallback_buffers(file) || any_uri_has_plus(file) ||
         has_accessors_without_view(file))
         changed = without_refused(file);
     const std::vector<unsigned char>& bytes = changed.empty() ? file.bytes : changed;

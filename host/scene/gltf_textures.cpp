@@ -23,8 +23,9 @@ const json& member(const json& object, const char* key) {
 // The JSON was checked by check_gltf().
 class Textures {
   public:
-    Textures(const GltfFile& file, const tinygltf::Model& model, Scene& scene)
-        : file_(file), model_(model), scene_(scene) {}
+    Textures(const GltfFile& file, const tinygltf::Model& model, std::size_t most_bytes,
+             Scene& scene)
+        : file_(file), model_(model), most_bytes_(most_bytes), scene_(scene) {}
 
     void add_material(const json& material, std::size_t index) {
         const json& pbr = member(material, "pbrMetallicRoughness");
@@ -33,8 +34,12 @@ class Textures {
                 {.color = true, .weighted = !opaque});
         add_map(index, MAP_METALLIC_ROUGHNESS, member(pbr, "metallicRoughnessTexture"), {});
         add_map(index, MAP_NORMAL, member(material, "normalTexture"), {});
-        if (!scene_.materials[index].unlit)
-            add_map(index, MAP_EMISSION, member(material, "emissiveTexture"), {.color = true});
+        if (scene_.materials[index].unlit) return;
+        add_map(index, MAP_EMISSION, member(material, "emissiveTexture"), {.color = true});
+        const json& specular = member(member(material, "extensions"), "KHR_materials_specular");
+        add_map(index, MAP_SPECULAR, member(specular, "specularTexture"), {});
+        add_map(index, MAP_SPECULAR_COLOR, member(specular, "specularColorTexture"),
+                {.color = true});
     }
 
     [[nodiscard]] std::vector<unsigned> sets() const { return sets_; }
@@ -117,8 +122,23 @@ class Textures {
         if (known != texels_.end()) return known->second;
         const std::string where = fmt::format("{}: images[{}]", file_.path, image);
         const std::vector<unsigned char> bytes = bytes_of(image, where);
-        const Texture texture = add_texels(scene_, decode_image(bytes, where), meaning, where);
+        const DecodedImage decoded = decode_image(bytes, where);
+        refuse_beyond_memory(decoded, where);
+        const Texture texture = add_texels(scene_, decoded, meaning, where);
         return texels_.emplace(key, texture).first->second;
+    }
+
+    // A few kilobytes may hold an image of any size, and a file any number of them.
+    void refuse_beyond_memory(const DecodedImage& image, const std::string& where) const {
+        const double words = image.bytes.empty() ? 2 : 1;
+        const double finest = words * image.width * image.height;
+        const double bytes = 4 * (static_cast<double>(scene_.texels.size()) + finest * 4 / 3);
+        constexpr double gib = 1 << 30;
+        if (bytes > static_cast<double>(most_bytes_))
+            throw InputError(
+                "{}: with it the scene's textures need {:.1f} GiB, and there are {:.1f} GiB of "
+                "memory",
+                where, bytes / gib, static_cast<double>(most_bytes_) / gib);
     }
 
     [[nodiscard]] std::vector<unsigned char> bytes_of(std::size_t image, const std::string& where) {
@@ -144,6 +164,7 @@ class Textures {
 
     const GltfFile& file_;
     const tinygltf::Model& model_;
+    std::size_t most_bytes_;
     Scene& scene_;
     std::vector<unsigned> sets_;
     std::map<std::pair<std::size_t, TexelMeaning>, Texture> texels_;
@@ -152,8 +173,9 @@ class Textures {
 }  // namespace
 
 std::vector<unsigned> load_textures(const GltfFile& file, const tinygltf::Model& model,
-                                    const std::vector<bool>& used, Scene& scene) {
-    Textures textures(file, model, scene);
+                                    const std::vector<bool>& used, std::size_t most_bytes,
+                                    Scene& scene) {
+    Textures textures(file, model, most_bytes, scene);
     const json& materials = member(file.json, "materials");
     for (std::size_t i = 0; i < materials.size(); ++i)
         if (used[i]) textures.add_material(materials[i], i);

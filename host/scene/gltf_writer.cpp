@@ -16,6 +16,13 @@ namespace {
 
 nlohmann::json numbers(glm::vec3 v) { return {v.x, v.y, v.z}; }
 
+nlohmann::json elements(const glm::mat4& m) {
+    nlohmann::json out = nlohmann::json::array();
+    for (int c = 0; c < 4; ++c)
+        for (int r = 0; r < 4; ++r) out.push_back(m[c][r]);
+    return out;
+}
+
 }  // namespace
 
 void Mesh::add_quad(glm::vec3 corner, glm::vec3 u, glm::vec3 v) {
@@ -102,7 +109,7 @@ int GltfWriter::add_accessor(const void* data, std::size_t bytes, std::size_t co
     return static_cast<int>(json_["accessors"].size()) - 1;
 }
 
-void GltfWriter::add_mesh(const std::string& name, const Mesh& mesh, int material) {
+int GltfWriter::add_shape(const std::string& name, const Mesh& mesh, int material) {
     constexpr int array_buffer = 34962;
     constexpr int element_buffer = 34963;
     constexpr int float_type = 5126;
@@ -127,7 +134,15 @@ void GltfWriter::add_mesh(const std::string& name, const Mesh& mesh, int materia
         {{"name", name},
          {"primitives",
           {{{"attributes", attributes}, {"indices", indices}, {"material", material}}}}});
-    json_["nodes"].push_back({{"name", name}, {"mesh", json_["meshes"].size() - 1}});
+    return static_cast<int>(json_["meshes"].size()) - 1;
+}
+
+void GltfWriter::add_mesh(const std::string& name, const Mesh& mesh, int material) {
+    json_["nodes"].push_back({{"name", name}, {"mesh", add_shape(name, mesh, material)}});
+}
+
+void GltfWriter::add_node(const std::string& name, int shape, const glm::mat4& to_world) {
+    json_["nodes"].push_back({{"name", name}, {"mesh", shape}, {"matrix", elements(to_world)}});
 }
 
 void GltfWriter::add_light(nlohmann::json light, glm::vec3 position, glm::vec3 direction) {
@@ -175,11 +190,8 @@ void GltfWriter::add_camera(const std::string& name, glm::vec3 eye, glm::vec3 ta
          {"type", "perspective"},
          {"perspective", {{"yfov", yfov}, {"aspectRatio", aspect}, {"znear", 0.01}}}});
     const glm::mat4 to_world = glm::inverse(glm::lookAt(eye, target, glm::vec3(0, 1, 0)));
-    nlohmann::json matrix = nlohmann::json::array();
-    for (int c = 0; c < 4; ++c)
-        for (int r = 0; r < 4; ++r) matrix.push_back(to_world[c][r]);
     json_["nodes"].push_back(
-        {{"name", name}, {"camera", json_["cameras"].size() - 1}, {"matrix", matrix}});
+        {{"name", name}, {"camera", json_["cameras"].size() - 1}, {"matrix", elements(to_world)}});
 }
 
 void GltfWriter::set_emitter_points(unsigned points) {

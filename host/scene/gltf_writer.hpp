@@ -37,6 +37,9 @@ class GltfWriter {
     int add_emitter(glm::vec3 radiance);
 
     void add_mesh(const std::string& name, const Mesh& mesh, int material);
+    /// A mesh that stands where nodes say; returns its index.
+    int add_shape(const std::string& name, const Mesh& mesh, int material);
+    void add_node(const std::string& name, int shape, const glm::mat4& to_world);
     /// Intensity in cd, towards all sides.
     void add_point(glm::vec3 position, glm::vec3 intensity);
     /// Intensity in cd, about `direction`; angles in radians.

@@ -21,16 +21,32 @@ View frame_all(const Bounds& bounds) {
     return view;
 }
 
+}  // namespace
+
 bool has_map(const Scene& scene, std::size_t material, MapKind kind) {
     return !scene.maps.empty() &&
            scene.maps[MAP_KIND_COUNT * material + kind].texture != NO_TEXTURE;
 }
 
-}  // namespace
+std::size_t Scene::seen_triangle_count() const {
+    std::size_t count = own_triangle_count();
+    for (const Instance& in : instances) count += shared_meshes[in.mesh].triangle_count;
+    return count;
+}
+
+void Scene::for_each_extreme(const std::function<void(glm::vec3)>& add) const {
+    const std::size_t own =
+        shared_meshes.empty() ? vertices.size() : shared_meshes.front().first_vertex;
+    for (std::size_t v = 0; v < own; ++v) add(vertices[v]);
+    for (const Instance& in : instances) {
+        const Bounds& mesh = shared_meshes[in.mesh].bounds;
+        for (int k = 0; k < 8; ++k) add(point_to_world(in, mesh.corner(k)));
+    }
+}
 
 Bounds Scene::bounds() const {
     Bounds bounds;
-    for (const glm::vec3& vertex : vertices) bounds.add(vertex);
+    for_each_extreme([&](const glm::vec3& point) { bounds.add(point); });
     return bounds;
 }
 
@@ -45,6 +61,8 @@ Features find_features(const Scene& scene) {
         const Material& material = scene.materials[i];
         if (material.base_color.w > 0 || material.specular > 0) features.ggx = true;
         if (glm::vec3(material.emission) != glm::vec3(0)) features.emission = true;
+        if (has_map(scene, i, MAP_SPECULAR) || has_map(scene, i, MAP_SPECULAR_COLOR))
+            features.specular_maps = true;
         if (material.base_color.w > 0 || material.specular > 0)
             features.reflections |= (material.roughness < REFLECTING_ALPHA ||
                                      has_map(scene, i, MAP_METALLIC_ROUGHNESS)) &&
@@ -55,6 +73,7 @@ Features find_features(const Scene& scene) {
     features.colors = !scene.colors.empty();
     features.tangents = !scene.tangents.empty();
     features.alpha = !scene.alpha_triangles.empty();
+    features.instances = !scene.instances.empty();
     return features;
 }
 

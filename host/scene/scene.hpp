@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <glm/glm.hpp>
 #include <optional>
 #include <string>
@@ -11,6 +12,7 @@
 #include <vector>
 
 #include "shared/camera.h"
+#include "shared/instance.h"
 #include "shared/light.h"
 #include "shared/material.h"
 #include "shared/texture.h"
@@ -39,6 +41,24 @@ struct Bounds {
         return empty() ? glm::vec3(0) : (lower + upper) / 2.f;
     }
     [[nodiscard]] float radius() const { return empty() ? 0 : glm::length(upper - lower) / 2; }
+    /// 0 to 7.
+    [[nodiscard]] glm::vec3 corner(int k) const {
+        return {k & 1 ? upper.x : lower.x, k & 2 ? upper.y : lower.y, k & 4 ? upper.z : lower.z};
+    }
+};
+
+/// From the frame of an instance's mesh to the world.
+[[nodiscard]] inline glm::vec3 point_to_world(const Instance& in, const glm::vec3& p) {
+    const float4 v(p, 1);
+    return {glm::dot(in.to_world[0], v), glm::dot(in.to_world[1], v), glm::dot(in.to_world[2], v)};
+}
+
+/// A mesh that is stored once and stands where instances say, in a frame of its own. It gives no
+/// light.
+struct SharedMesh {
+    std::uint32_t first_triangle, triangle_count;  // its run of the scene's
+    std::uint32_t first_vertex;
+    Bounds bounds;
 };
 
 struct Scene {
@@ -48,6 +68,9 @@ struct Scene {
     std::vector<glm::vec3> vertex_normals;  // per vertex, unit or 0 where flat; empty if all
     std::vector<std::uint32_t> indices;     // [3 * triangle + corner] into vertices
     std::vector<std::uint32_t> triangle_materials;  // [triangle] into materials
+    // Theirs are the last vertices and triangles, in this order; all others stand in the world.
+    std::vector<SharedMesh> shared_meshes;
+    std::vector<Instance> instances;  // of these
     std::vector<Material> materials;
     std::vector<std::string> material_names;  // [material], as in the file; may be empty
     std::vector<TextureMap> maps;   // [MAP_KIND_COUNT * material + MapKind]; empty if all are none
@@ -71,7 +94,16 @@ struct Scene {
     std::vector<std::string> warnings;       // what the file holds and is not rendered
     std::optional<unsigned> emitter_points;  // the file's own wish, see gltf.hpp
 
+    /// As many as are stored.
     [[nodiscard]] std::size_t triangle_count() const { return triangle_materials.size(); }
+    /// Of these, the ones that stand in the world.
+    [[nodiscard]] std::size_t own_triangle_count() const {
+        return shared_meshes.empty() ? triangle_count() : shared_meshes.front().first_triangle;
+    }
+    /// As many as are seen: instances counted one by one.
+    [[nodiscard]] std::size_t seen_triangle_count() const;
+    /// Calls `add` with points whose box holds all that is seen.
+    void for_each_extreme(const std::function<void(glm::vec3)>& add) const;
     [[nodiscard]] Bounds bounds() const;
     /// Whether a surface point's material is its own: its textures and vertex colours say more than
     /// its triangle's does.
@@ -86,12 +118,17 @@ struct Features {
     bool emission = false;              // emitters can be seen
     bool reflections = false;           // glossy materials reflect area lights
     bool textures = false;              // materials have textures
+    bool specular_maps = false;         // ... of their specular factor and colour
     bool colors = false;                // vertices have colours
     bool tangents = false;              // vertices have tangents
     bool alpha = false;                 // not all of every triangle is there
+    bool instances = false;             // meshes are stored once and stand in several places
 };
 
 [[nodiscard]] Features find_features(const Scene& scene);
+
+/// Whether a material takes something from a texture.
+[[nodiscard]] bool has_map(const Scene& scene, std::size_t material, MapKind kind);
 
 /// Luminance, linear Rec. 709.
 [[nodiscard]] inline float luminance(glm::vec3 rgb) {

@@ -17,9 +17,13 @@ Defines kind_defines(const Features& features) {
 
 // Whether a dielectric reflects otherwise than one of the index 1.5.
 bool varies_reflectance(const Scene& scene) {
-    return std::ranges::any_of(scene.materials, [](const Material& m) {
-        return m.specular > 0 && m.reflectance != float4(glm::vec3(USUAL_REFLECTANCE), 0);
-    });
+    for (std::size_t i = 0; i < scene.materials.size(); ++i) {
+        const Material& m = scene.materials[i];
+        if (m.specular > 0 && (m.reflectance != float4(glm::vec3(USUAL_REFLECTANCE), 0) ||
+                               has_map(scene, i, MAP_SPECULAR_COLOR)))
+            return true;
+    }
+    return false;
 }
 
 void set_textures(Device& device, const Scene& scene, Arguments& arguments) {
@@ -69,6 +73,12 @@ DeviceScene upload_scene(Device& device, const Scene& scene, const WideBvh& bvh,
         .set("materials", out.materials)
         .set("lights", device.upload(tree ? tree->lights : scene.lights))
         .set("light_count", out.light_count);
+    if (features.instances) {
+        const Buffer<Instance> instances = device.upload(bvh.instances);
+        out.arguments.set("instances", instances)
+            .set("instance_count", static_cast<uint>(bvh.instances.size()))
+            .set("bvh_instances", instances);  // traversal has its own names
+    }
     if (features.smooth) out.arguments.set("vertex_normals", device.share(scene.vertex_normals));
     if (features.textures || features.alpha) set_textures(device, scene, out.arguments);
     if (features.tangents) out.arguments.set("tangents", device.upload(scene.tangents));
@@ -81,10 +91,12 @@ DeviceScene upload_scene(Device& device, const Scene& scene, const WideBvh& bvh,
     out.traversal = {{"BVH_WIDTH", static_cast<int>(bvh.width)},
                      {"BVH_BLOCK", static_cast<int>(bvh.block)},
                      {"BVH_STACK", static_cast<int>(bvh.stack)},
-                     {"HAS_ALPHA", features.alpha}};
+                     {"HAS_ALPHA", features.alpha},
+                     {"HAS_INSTANCES", features.instances}};
     out.surfaces = out.traversal;
     out.surfaces["HAS_SMOOTH"] = features.smooth;
     out.surfaces["HAS_TEXTURES"] = features.textures;
+    out.surfaces["HAS_SPECULAR_MAPS"] = features.specular_maps;
     out.surfaces["HAS_TANGENTS"] = features.tangents;
     out.surfaces["HAS_COLORS"] = features.colors;
     out.shading = out.traversal;

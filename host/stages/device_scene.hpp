@@ -27,8 +27,8 @@ struct DeviceScene {
 [[nodiscard]] unsigned lanes_for(const DeviceInfo& device);
 
 /// Uploads a scene whose lights are complete (add_emitters): in the order of `tree`, and with its
-/// nodes (nodes, root_count, second_root), if there is one. Scene and BVH live longer. `points`:
-/// how many points have a material of their own where the scene varies them.
+/// nodes (nodes, root_count, second_root), if there is one. Scene and BVH must outlive the result.
+/// `points`: how many points have a material of their own where the scene varies them.
 [[nodiscard]] DeviceScene upload_scene(Device& device, const Scene& scene, const WideBvh& bvh,
                                        const Camera& camera, const LightTree* tree = nullptr,
                                        std::size_t points = 0);

@@ -9,6 +9,7 @@
 #include "reference/random.hpp"
 #include "reference/textures.hpp"
 #include "reference/tiles.hpp"
+#include "reference/triangle.hpp"
 #include "shared/layout.h"
 #include "stages/accumulate.hpp"
 #include "verify/tolerances.hpp"
@@ -17,9 +18,12 @@
 namespace manylight {
 namespace {
 
-std::array<double, 8> values_of(const Material& m) {
-    return {m.base_color.x, m.base_color.y, m.base_color.z, m.base_color.w,
-            m.emission.x,   m.emission.y,   m.emission.z,   m.roughness};
+using Values = std::array<double, 12>;
+
+Values values_of(const Material& m) {
+    return {m.base_color.x, m.base_color.y,  m.base_color.z,  m.base_color.w,
+            m.emission.x,   m.emission.y,    m.emission.z,    m.roughness,
+            m.specular,     m.reflectance.x, m.reflectance.y, m.reflectance.z};
 }
 
 // To all sides.
@@ -110,8 +114,8 @@ void Verifier::check_surface(Check& check, const Surface& found, uint x, uint y,
     }
     if (!found_hit) return check.compare(0, 1, where);
     glm::dvec3 v[3];
-    for (int k = 0; k < 3; ++k)
-        v[k] = scene_.vertices[scene_.indices[3 * std::size_t{found.triangle} + k]];
+    const reference::Triangle triangle(scene_, found.triangle);
+    for (int k = 0; k < 3; ++k) v[k] = triangle.corner(k);
     const glm::dvec3 cross = glm::cross(v[1] - v[0], v[2] - v[0]);
     const double longest =
         std::max({glm::length(v[1] - v[0]), glm::length(v[2] - v[1]), glm::length(v[0] - v[2])});
@@ -161,14 +165,14 @@ void Verifier::check_material(Check& check, const Surface& found, const referenc
         return values_of(reference::material_at(
             scene_, moved, {hit.triangle, hit.t, hit.u + step.x, hit.v + step.y}));
     };
-    const std::array<double, 8> expected = values({0, 0}, 1);
-    std::array<double, 8> slack{};
-    const auto add_slack = [&](const std::array<double, 8>& moved) {
+    const Values expected = values({0, 0}, 1);
+    Values slack{};
+    const auto add_slack = [&](const Values& moved) {
         for (std::size_t i = 0; i < slack.size(); ++i) slack[i] += std::abs(moved[i] - expected[i]);
     };
     for (const glm::dvec2& step : steps_of(shift)) add_slack(values(step, 1));
     for (const double pixel : {1 - 1e-5, 1 + 1e-5}) add_slack(values({0, 0}, pixel));
-    const std::array<double, 8> own = values_of(scene_.materials[found.shading]);
+    const Values own = values_of(scene_.materials[found.shading]);
     for (std::size_t i = 0; i < slack.size(); ++i)
         check.compare(
             std::abs(own[i] - expected[i]),

@@ -2,16 +2,17 @@
 // Ray against wide BVH, one ray per work-item, all children or triangles of a node at once.
 //
 // Layout (host/bvh/wide.hpp): a node is 7 vectors of BVH_WIDTH lanes: lower x y z, upper x y z,
-// children. A child >= 0 is a node; < 0 is a leaf, ~(block << 4 | triangles - 1); empty lanes have
-// inverted bounds and child -1. A block is 13 vectors of BVH_BLOCK lanes: vertex 0, vertex 1 -
-// vertex 0, vertex 2 - vertex 0, each x y z, the triangle's index, and the largest coordinate of
-// each edge, the third from vertex 1 to vertex 2; empty lanes are zero, a triangle that no ray
-// hits.
+// children. A child >= 0 is a node or, from INSTANCE_CHILD on, an instance; < 0 is a leaf,
+// ~(block << 4 | triangles - 1); empty lanes have inverted bounds and child -1. A block is 13
+// vectors of BVH_BLOCK lanes: vertex 0, vertex 1 - vertex 0, vertex 2 - vertex 0, each x y z, the
+// triangle's index, and the largest coordinate of each edge, the third from vertex 1 to vertex 2;
+// empty lanes are zero, a triangle that no ray hits.
 #ifndef MANYLIGHT_LIB_BVH_H
 #define MANYLIGHT_LIB_BVH_H
 
 #include "lib/alpha.h"
 #include "lib/common.h"
+#include "lib/instances.h"
 
 #define JOIN_TOKENS(a, b) a##b
 #define JOIN(a, b) JOIN_TOKENS(a, b)
@@ -71,9 +72,10 @@ typedef struct Hit {
 #define as_int_k JOIN(as_int, BVH_BLOCK)
 #define as_float_k JOIN(as_float, BVH_BLOCK)
 
-#define BVH_PARAMETERS \
-    __global const float_w *bvh_nodes, __global const float_k *bvh_blocks ALPHA_PARAMETERS
-#define BVH_ARGUMENTS bvh_nodes, bvh_blocks ALPHA_ARGUMENTS
+#define BVH_PARAMETERS                 \
+    __global const float_w *bvh_nodes, \
+        __global const float_k *bvh_blocks INSTANCE_PARAMETERS ALPHA_PARAMETERS
+#define BVH_ARGUMENTS bvh_nodes, bvh_blocks INSTANCE_ARGUMENTS ALPHA_ARGUMENTS
 
 // What the test of boxes needs of a ray.
 typedef struct Prepared {
@@ -198,25 +200,65 @@ static float2 block_weights(const PreparedBlock* b, uint lane, float3 d) {
 
 static float largest_part(float3 v) { return max(max(fabs(v.x), fabs(v.y)), fabs(v.z)); }
 
+// A ray in the frame in which it is traced: the world's or an instance's. Its t is the same.
+typedef struct Traced {
+    Ray ray;
+    Prepared prepared;
+    float size;     // the largest part of the direction
+    uint renumber;  // to be added to the indices of triangles
+} Traced;
+
+static Traced trace_in_world(Ray ray) {
+    const Traced traced = {ray, prepare_ray(ray), largest_part(ray.direction), 0u};
+    return traced;
+}
+
+#if HAS_INSTANCES
+static Traced trace_in_instance(Ray ray, __global const Instance* in) {
+    ray.origin = point_to_object(in, ray.origin);
+    ray.direction = direction_to_object(in, ray.direction);
+    Traced traced = trace_in_world(ray);
+    traced.renumber = in->first - in->stored;
+    return traced;
+}
+#endif
+
 // Whether anything is hit within the segment.
 static bool occluded(BVH_PARAMETERS, Ray ray) {
-    const Prepared prepared = prepare_ray(ray);
-    const float size = largest_part(ray.direction);
+    Traced traced = trace_in_world(ray);
     int stack[BVH_STACK];
     int top = 0;
     stack[top++] = 0;
+#if HAS_INSTANCES
+    int outside = 0;  // at this height of the stack, the ray is back in the world
+#endif
     while (top > 0) {
+#if HAS_INSTANCES
+        if (top == outside) {
+            traced = trace_in_world(ray);
+            outside = 0;
+        }
+#endif
         const int entry = stack[--top];
+#if HAS_INSTANCES
+        if (entry >= INSTANCE_CHILD) {
+            __global const Instance* in = bvh_instances + (entry - INSTANCE_CHILD);
+            traced = trace_in_instance(ray, in);
+            outside = top;
+            stack[top++] = in->root;
+            continue;
+        }
+#endif
         if (entry < 0) {
             __global const float_k* rows = bvh_blocks + (~entry >> 4) * BLOCK_ROWS;
-            const PreparedBlock block = prepare_block(rows, ray.origin);
-            uint found = lanes_k(hit_block(&block, ray.direction, size, ray.end).hit);
+            const PreparedBlock block = prepare_block(rows, traced.ray.origin);
+            uint found = lanes_k(hit_block(&block, traced.ray.direction, traced.size, ray.end).hit);
 #if HAS_ALPHA
             __global const uint* triangles = (__global const uint*)(rows + 9);
             for (; found; found &= found - 1u) {
                 const uint lane = lowest(found);
-                if (is_there(ray.origin, ray.direction, triangles[lane],
-                             block_weights(&block, lane, ray.direction) ALPHA_ARGUMENTS))
+                if (is_there(traced.ray.origin, traced.ray.direction, triangles[lane],
+                             block_weights(&block, lane, traced.ray.direction) ALPHA_ARGUMENTS))
                     break;
             }
 #endif
@@ -226,7 +268,7 @@ static bool occluded(BVH_PARAMETERS, Ray ray) {
         __global const float_w* node = bvh_nodes + entry * 7;
         __global const int* children = (__global const int*)(node + 6);
         float_w near;
-        for (uint lanes = lanes_w(enter_children(node, &prepared, ray.end, &near)); lanes;
+        for (uint lanes = lanes_w(enter_children(node, &traced.prepared, ray.end, &near)); lanes;
              lanes &= lanes - 1u)
             stack[top++] = children[lowest(lanes)];
     }
@@ -235,21 +277,38 @@ static bool occluded(BVH_PARAMETERS, Ray ray) {
 
 // The hit with the smallest t.
 static Hit closest_hit(BVH_PARAMETERS, Ray ray) {
-    const Prepared prepared = prepare_ray(ray);
-    const float size = largest_part(ray.direction);
+    Traced traced = trace_in_world(ray);
     Hit hit = {~0u, ray.end};
     int stack[BVH_STACK];
     float distance[BVH_STACK];
     int top = 0;
     stack[top] = 0;
     distance[top++] = 0.0f;
+#if HAS_INSTANCES
+    int outside = 0;  // as in occluded()
+#endif
     while (top > 0) {
+#if HAS_INSTANCES
+        if (top == outside) {
+            traced = trace_in_world(ray);
+            outside = 0;
+        }
+#endif
         const int entry = stack[--top];
         if (distance[top] > ray.end) continue;
+#if HAS_INSTANCES
+        if (entry >= INSTANCE_CHILD) {
+            __global const Instance* in = bvh_instances + (entry - INSTANCE_CHILD);
+            traced = trace_in_instance(ray, in);
+            outside = top;
+            stack[top++] = in->root;  // at the same distance
+            continue;
+        }
+#endif
         if (entry < 0) {
             __global const float_k* block = bvh_blocks + (~entry >> 4) * BLOCK_ROWS;
-            const PreparedBlock ready = prepare_block(block, ray.origin);
-            const BlockHits hits = hit_block(&ready, ray.direction, size, ray.end);
+            const PreparedBlock ready = prepare_block(block, traced.ray.origin);
+            const BlockHits hits = hit_block(&ready, traced.ray.direction, traced.size, ray.end);
             const uint found = lanes_k(hits.hit);
             if (!found) continue;
             __global const uint* triangles = (__global const uint*)(block + 9);
@@ -259,11 +318,11 @@ static Hit closest_hit(BVH_PARAMETERS, Ray ray) {
                 const uint lane = lowest(lanes);
                 if (t[lane] >= hit.t) continue;
 #if HAS_ALPHA
-                if (!is_there(ray.origin, ray.direction, triangles[lane],
-                              block_weights(&ready, lane, ray.direction) ALPHA_ARGUMENTS))
+                if (!is_there(traced.ray.origin, traced.ray.direction, triangles[lane],
+                              block_weights(&ready, lane, traced.ray.direction) ALPHA_ARGUMENTS))
                     continue;
 #endif
-                hit.triangle = triangles[lane];
+                hit.triangle = triangles[lane] + traced.renumber;
                 hit.t = t[lane];
             }
             ray.end = hit.t;
@@ -274,7 +333,7 @@ static Hit closest_hit(BVH_PARAMETERS, Ray ray) {
         float near[BVH_WIDTH] __attribute__((aligned(64)));
         float nearest = INFINITY;
         float_w enter;
-        uint lanes = lanes_w(enter_children(node, &prepared, ray.end, &enter));
+        uint lanes = lanes_w(enter_children(node, &traced.prepared, ray.end, &enter));
         *(float_w*)near = enter;
         for (; lanes; lanes &= lanes - 1u) {  // the nearest child ends on top of the stack
             const uint lane = lowest(lanes);

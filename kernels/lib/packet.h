@@ -189,6 +189,21 @@ static int16 there_for_all(const Packet* p, int16 hit, const PreparedBlock* b, u
 }
 #endif
 
+#if HAS_INSTANCES
+// The packet in the frame of an instance.
+static Packet packet_in_instance(const Packet* p, __global const Instance* in) {
+    const float4 a = in->to_object[0], b = in->to_object[1], c = in->to_object[2];
+    return make_packet(point_to_object(in, p->origin), fma(a.x, p->x, fma(a.y, p->y, a.z * p->z)),
+                       fma(b.x, p->x, fma(b.y, p->y, b.z * p->z)),
+                       fma(c.x, p->x, fma(c.y, p->y, c.z * p->z)), p->end);
+}
+
+static void leave_instance(const Packet* inside, Packet* world) {
+    world->end = inside->end;
+    world->furthest = inside->furthest;
+}
+#endif
+
 // Ends the rays that hit something, at -1; returns whether any did.
 static bool occlude_packet(BVH_PARAMETERS, Packet* p) {
     int stack[BVH_STACK];
@@ -198,10 +213,32 @@ static bool occlude_packet(BVH_PARAMETERS, Packet* p) {
     const uint all = live;
     stack[top] = 0;
     masks[top++] = live;
+#if HAS_INSTANCES
+    Packet inside;  // an instance; then p points to it
+    Packet* const world = p;
+    int outside = 0;  // as in occluded()
+#endif
     while (top > 0) {
+#if HAS_INSTANCES
+        if (top == outside) {
+            leave_instance(p, world);
+            p = world;
+            outside = 0;
+        }
+#endif
         const int entry = stack[--top];
         const uint mask = masks[top] & live;
         if (!mask) continue;
+#if HAS_INSTANCES
+        if (entry >= INSTANCE_CHILD) {
+            __global const Instance* in = bvh_instances + (entry - INSTANCE_CHILD);
+            inside = packet_in_instance(world, in);
+            p = &inside;
+            outside = top;
+            stack[top++] = in->root;  // for the same rays
+            continue;
+        }
+#endif
         if (entry < 0) {
             __global const float_k* rows = bvh_blocks + (~entry >> 4) * BLOCK_ROWS;
             const PreparedBlock block = prepare_block(rows, p->origin);
@@ -252,6 +289,9 @@ static bool occlude_packet(BVH_PARAMETERS, Packet* p) {
             masks[top++] = (uint)INT_LANE(sets, lane);
         }
     }
+#if HAS_INSTANCES
+    leave_instance(p, world);
+#endif
     return live != all;
 }
 
@@ -265,10 +305,37 @@ static void closest_hits(BVH_PARAMETERS, Packet* p, int16* triangles) {
     stack[top] = 0;
     distance[top] = 0.0f;
     masks[top++] = lanes_16(p->end > 0.0f);
+#if HAS_INSTANCES
+    Packet inside;  // as in occlude_packet()
+    Packet* const world = p;
+    int outside = 0;
+    int renumber = 0;  // to be added to the indices of triangles
+#else
+    const int renumber = 0;
+#endif
     while (top > 0) {
+#if HAS_INSTANCES
+        if (top == outside) {
+            leave_instance(p, world);
+            p = world;
+            outside = 0;
+            renumber = 0;
+        }
+#endif
         const int entry = stack[--top];
         if (distance[top] > p->furthest) continue;
         const uint mask = masks[top];
+#if HAS_INSTANCES
+        if (entry >= INSTANCE_CHILD) {
+            __global const Instance* in = bvh_instances + (entry - INSTANCE_CHILD);
+            inside = packet_in_instance(world, in);
+            p = &inside;
+            outside = top;
+            renumber = (int)(in->first - in->stored);
+            stack[top++] = in->root;  // for the same rays, at the same distance
+            continue;
+        }
+#endif
         if (entry < 0) {
             __global const float_k* rows = bvh_blocks + (~entry >> 4) * BLOCK_ROWS;
             __global const int* names = (__global const int*)(rows + 9);
@@ -292,7 +359,7 @@ static void closest_hits(BVH_PARAMETERS, Packet* p, int16* triangles) {
                             continue;
 #endif
                         SET_LANE(p->end, lane, LANE(t, triangle));
-                        INT_LANE(*triangles, lane) = names[triangle];
+                        INT_LANE(*triangles, lane) = names[triangle] + renumber;
                         any_hit = true;
                     }
                 }
@@ -305,7 +372,7 @@ static void closest_hits(BVH_PARAMETERS, Packet* p, int16* triangles) {
 #endif
                     if (!lanes_16(hits.hit)) continue;
                     p->end = select(p->end, hits.t / hits.n, hits.hit);
-                    *triangles = select(*triangles, (int16)(names[triangle]), hits.hit);
+                    *triangles = select(*triangles, (int16)(names[triangle] + renumber), hits.hit);
                     any_hit = true;
                 }
             }
@@ -334,6 +401,9 @@ static void closest_hits(BVH_PARAMETERS, Packet* p, int16* triangles) {
             masks[place] = (uint)INT_LANE(sets, lane);
         }
     }
+#if HAS_INSTANCES
+    leave_instance(p, world);
+#endif
 }
 
 #endif

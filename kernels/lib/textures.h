@@ -96,11 +96,11 @@ typedef struct MapCorners {
 } MapCorners;
 
 static MapCorners map_corners(__global const TextureMap* map, __global const float2* coordinates,
-                              uint vertex_count, __global const uint* corner) {
+                              uint vertex_count, uint3 corner) {
     __global const float2* set = coordinates + (ulong)map->set * vertex_count;
-    const float2 a = set[corner[0]];
-    const float2 b = set[corner[1]] - a;
-    const float2 c = set[corner[2]] - a;
+    const float2 a = set[corner.x];
+    const float2 b = set[corner.y] - a;
+    const float2 c = set[corner.z] - a;
     const float4 u = map->u, v = map->v;
     MapCorners m;
     m.at = (float2)(u.x * a.x + u.y * a.y + u.z, v.x * a.x + v.y * a.y + v.z);
@@ -111,8 +111,7 @@ static MapCorners map_corners(__global const TextureMap* map, __global const flo
 
 // What a map holds for the point with these weights of vertices 1 and 2, where a pixel sees `share`
 // of the parallelogram of the triangle's edges; 1 where there is no texture.
-static float4 sample_map(TEXTURE_PARAMETERS, uint map, __global const uint* corner, float2 weights,
-                         float share) {
+static float4 sample_map(TEXTURE_PARAMETERS, uint map, uint3 corner, float2 weights, float share) {
     const uint texture = maps[map].texture;
     if (texture == NO_TEXTURE) return (float4)(1.0f);
     const MapCorners m = map_corners(maps + map, coordinates, vertex_count, corner);

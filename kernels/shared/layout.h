@@ -6,6 +6,7 @@
 #include "shared/adaptive.h"
 #include "shared/camera.h"
 #include "shared/contribution.h"
+#include "shared/instance.h"
 #include "shared/light.h"
 #include "shared/light_tree.h"
 #include "shared/material.h"
@@ -27,6 +28,8 @@
     X(Material, reflectance) X(Material, alpha) X(Material, cutoff) X(Material, unlit)              \
     X(AlphaTriangle, first) X(AlphaTriangle, second) X(AlphaTriangle, alphas)                      \
     X(AlphaTriangle, texture)                                                                      \
+    X(Instance, to_world) X(Instance, to_object) X(Instance, first) X(Instance, stored)              \
+    X(Instance, mesh) X(Instance, mirrored) X(Instance, root)                                      \
     X(Light, position) X(Light, axis) X(Light, edge) X(Light, emission)                            \
     X(Tiles, width) X(Tiles, height) X(Tiles, size) X(Tiles, columns) X(Tiles, first)              \
     X(Tiles, count)                                                                                \

@@ -10,7 +10,8 @@ SHARED_BEGIN
 typedef struct Material {
     float4 base_color;   // rgb: linear; w: metallic, 0 to 1
     float4 emission;     // rgb: radiance, cd/m2, emitted by the front side; w: 1 if both sides emit
-    float4 reflectance;  // rgb: of the dielectric, at normal incidence, for `specular` 1
+    float4 reflectance;  // rgb: of the dielectric, at normal incidence, for `specular` 1; above 1
+                         // only where it is still to be multiplied by a texture
     float roughness;     // GGX alpha, at least SMALLEST_ALPHA
     float specular;      // 0 to 1; a material with metallic and specular 0 is Lambert's
     float alpha;         // 0 to 1: how much of it is there

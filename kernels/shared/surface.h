@@ -12,7 +12,7 @@ typedef struct Surface {
     float4 normal;     // xyz: unit shading normal on the viewer's side
     float4 geometric;  // xyz: unit normal of the triangle on the viewer's side;
                        // w: distance by which shadow rays start off the surface (see OFFSET_SCALE)
-    uint triangle;     // index in Scene::indices / 3
+    uint triangle;     // index in Scene::indices / 3, or an instance's
     uint material;     // index in Scene::materials
     uint front;        // 1 where the viewer is on the side that the triangle's winding faces
     uint shading;      // index of what it shades with, on the device: `material`, or behind the
@@ -21,8 +21,9 @@ typedef struct Surface {
 SHARED_SIZE(Surface, 64)
 
 /// Shadow rays start and end off a surface by this times the largest coordinate of its triangle's
-/// vertices: the position's rounding error is a few units in the last place of those (the bound of
-/// Pharr, Jakob, Humphreys, "Physically Based Rendering" 3rd ed., 3.9.4, with room to spare).
+/// vertices, and of these relative to the place of the instance that it is of: the position's
+/// rounding error is a few units in the last place of those (the bound of Pharr, Jakob, Humphreys,
+/// "Physically Based Rendering" 3rd ed., 3.9.4, with room to spare).
 #define OFFSET_SCALE 4e-6f
 
 SHARED_END

@@ -43,7 +43,9 @@ enum MapKind {
     MAP_METALLIC_ROUGHNESS = 1,  // metallic in B, the root of Material::roughness in G
     MAP_NORMAL = 2,              // in the frame of the tangents
     MAP_EMISSION = 3,
-    MAP_KIND_COUNT = 4
+    MAP_SPECULAR = 4,        // Material::specular in A
+    MAP_SPECULAR_COLOR = 5,  // of Material::reflectance
+    MAP_KIND_COUNT = 6
 };
 
 /// How a material sees a texture: at (dot(u, (s, t, 1)), dot(v, (s, t, 1))), where s and t are

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <numeric>
 #include <random>
 
 #include "error.hpp"
@@ -211,11 +212,15 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const std::filesystem::path file = folder() / "scene.glb";
     std::ofstream(file, std::ios::binary)
         .write(reinterpret_cast<const char*>(data), static_cast<std::streamsize>(size));
+    const unsigned chance = std::accumulate(data, data + size, 0u);  // the input's own
     try {
         manylight::Scene scene = manylight::load_scene(
-            file.string(), {.seconds = size % 2 ? std::optional(0.5) : std::nullopt,
+            file.string(), {.seconds = chance % 2 ? std::optional(0.5) : std::nullopt,
+                            .storage = chance % 4 < 2 ? manylight::MeshStorage::shared
+                                                      : manylight::MeshStorage::copied,
                             .most_bytes = std::size_t{1} << 28});
         manylight::add_emitters(scene, 0);
+        (void)scene.bounds();
     } catch (const manylight::InputError&) {
     }
     return 0;

@@ -22,6 +22,8 @@ const Builtin builtins[] = {
      "streets by night: 100,000 lamps and windows",
      make_city,
      {{"lights", "number of lamps", true, 1e5, {1, 10, 100, 1e3, 1e4, 1e5, 1e6}}}},
+    {"forest", "600 lamps in a wood of 15 million triangles, which are two meshes in 1500 places",
+     make_forest},
     {"glossy",
      "1000 coloured lights over a shiny floor",
      make_glossy,

@@ -52,6 +52,7 @@ void make_boards(GltfWriter& out, const BuiltinOptions& options);
 void make_city(GltfWriter& out, const BuiltinOptions& options);
 void make_cornell(GltfWriter& out, const BuiltinOptions& options);
 void make_dragon(GltfWriter& out, const BuiltinOptions& options);
+void make_forest(GltfWriter& out, const BuiltinOptions& options);
 void make_glossy(GltfWriter& out, const BuiltinOptions& options);
 void make_hidden(GltfWriter& out, const BuiltinOptions& options);
 void make_near(GltfWriter& out, const BuiltinOptions& options);

@@ -53,7 +53,7 @@ Mesh make_knot() {
 
 // All triangles of a glTF file.
 Mesh read_mesh(const std::string& path) {
-    const Scene scene = load_scene(path);
+    const Scene scene = load_scene(path, {.storage = MeshStorage::copied});
     for (const std::string& warning : scene.warnings) fmt::print(stderr, "warning: {}\n", warning);
     const Bounds bounds = scene.bounds();
     if (scene.triangle_count() == 0 || !(bounds.radius() > 1e-6f * glm::length(bounds.centre())))

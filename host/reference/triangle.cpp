@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: MIT
+#include "reference/triangle.hpp"
+
+#include <algorithm>
+
+namespace manylight::reference {
+namespace {
+
+glm::dmat3 linear_part(const Instance& in) {
+    return glm::transpose(glm::dmat3(glm::dvec3(in.to_world[0]), glm::dvec3(in.to_world[1]),
+                                     glm::dvec3(in.to_world[2])));
+}
+
+glm::dvec3 place_of(const Instance& in) {
+    return {in.to_world[0].w, in.to_world[1].w, in.to_world[2].w};
+}
+
+glm::dvec3 unit_or_none(const glm::dvec3& v) {
+    return glm::length(v) > 0 ? glm::normalize(v) : glm::dvec3(0);
+}
+
+double largest_part(const glm::dvec3& v) {
+    return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
+}
+
+}  // namespace
+
+Triangle::Triangle(const Scene& scene, uint triangle) : scene_(scene), stored_(triangle) {
+    if (triangle < scene.triangle_count()) return;
+    const auto behind = std::ranges::upper_bound(scene.instances, triangle, {},
+                                                 [](const auto& in) { return in.first; });
+    instance_ = &*std::prev(behind);
+    stored_ = instance_->stored + (triangle - instance_->first);
+}
+
+glm::dvec3 Triangle::corner(int k) const {
+    const glm::dvec3 v(scene_.vertices[vertex(k)]);
+    return instance_ ? linear_part(*instance_) * v + place_of(*instance_) : v;
+}
+
+glm::dvec3 Triangle::face() const {
+    const glm::dvec3 n = glm::cross(corner(1) - corner(0), corner(2) - corner(0));
+    return instance_ && glm::determinant(linear_part(*instance_)) < 0 ? -n : n;
+}
+
+glm::dvec3 Triangle::normal(int k) const {
+    if (scene_.vertex_normals.empty()) return glm::dvec3(0);
+    const glm::dvec3 n(scene_.vertex_normals[vertex(k)]);
+    if (!instance_) return n;
+    return unit_or_none(glm::transpose(glm::inverse(linear_part(*instance_))) * n);
+}
+
+glm::dvec4 Triangle::tangent(int k) const {
+    if (scene_.tangents.empty()) return glm::dvec4(0);
+    const glm::dvec4 t(scene_.tangents[vertex(k)]);
+    if (!instance_) return t;
+    const glm::dmat3 linear = linear_part(*instance_);
+    return glm::dvec4(unit_or_none(linear * glm::dvec3(t)),
+                      glm::determinant(linear) < 0 ? -t.w : t.w);
+}
+
+double Triangle::cell_area() const { return instance_ ? 0 : scene_.cell_areas[stored_]; }
+
+double Triangle::extent() const {
+    double extent = 0;
+    for (int k = 0; k < 3; ++k) {
+        extent = std::max(extent, largest_part(corner(k)));
+        if (instance_) extent = std::max(extent, largest_part(corner(k) - place_of(*instance_)));
+    }
+    return extent;
+}
+
+}  // namespace manylight::reference

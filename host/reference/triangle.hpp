@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <glm/glm.hpp>
+
+#include "scene/scene.hpp"
+
+namespace manylight::reference {
+
+/// A scene's triangle as it stands in the world, in double precision; one of an instance by the
+/// instance's matrix to the world alone.
+class Triangle {
+  public:
+    Triangle(const Scene& scene, uint triangle);
+
+    [[nodiscard]] uint material() const { return scene_.triangle_materials[stored_]; }
+    /// Corner k's vertex: an index in the scene's arrays.
+    [[nodiscard]] uint vertex(int k) const { return scene_.indices[3 * std::size_t{stored_} + k]; }
+    /// Where corner k is, m.
+    [[nodiscard]] glm::dvec3 corner(int k) const;
+    /// Normal on the side that the winding faces; its length is twice the area, m2.
+    [[nodiscard]] glm::dvec3 face() const;
+    /// Of corner k's vertex; unit, or 0 where it has none.
+    [[nodiscard]] glm::dvec3 normal(int k) const;
+    /// xyz: unit; w: as in glTF; 0 where it has none.
+    [[nodiscard]] glm::dvec4 tangent(int k) const;
+    /// Of each cell of the area light that it is, m2; 0: it is none.
+    [[nodiscard]] double cell_area() const;
+    /// The largest coordinate of the corners, in the world and relative to the instance's place.
+    [[nodiscard]] double extent() const;
+
+  private:
+    const Scene& scene_;
+    const Instance* instance_ = nullptr;
+    uint stored_;
+};
+
+}  // namespace manylight::reference
