@@ -85,7 +85,8 @@ class InstancedFile {
               std::vector<double>(glm::value_ptr(to_world), glm::value_ptr(to_world) + 16)}});
     }
 
-    [[nodiscard]] Scene load(MeshStorage storage, std::size_t most_bytes = 0) {
+    [[nodiscard]] Scene load(MeshStorage storage) { return load({.storage = storage}); }
+    [[nodiscard]] Scene load(const LoadOptions& options) {
         std::ofstream(test::temporary("instances.bin"), std::ios::binary) << data_;
         document["buffers"] = {
             {{"byteLength", data_.size()},
@@ -95,7 +96,7 @@ class InstancedFile {
         document["scenes"] = {{{"nodes", nodes}}};
         const std::string path = test::temporary("instances.gltf");
         std::ofstream(path) << document;
-        Scene scene = load_scene(path, {.storage = storage, .most_bytes = most_bytes});
+        Scene scene = load_scene(path, options);
         add_emitters(scene, 0);
         return scene;
     }
@@ -207,25 +208,30 @@ TEST(instances, are_where_copies_would_be) {
 }
 
 TEST(instances, look_as_copies_do) {
-    InstancedFile file;
-    const test::TestScene shared = seen(file.load(MeshStorage::shared));
-    const test::TestScene copied = seen(file.load(MeshStorage::copied));
-    FOR_EACH_DEVICE(device) {
-        RenderOptions options;
-        options.sampler = "exhaustive";
-        options.spp = 1;
-        const Image a = test::render(device, shared, options).image;
-        const Image b = test::render(device, copied, options).image;
-        double lit = 0;
-        std::size_t differ = 0;  // where rounding takes a ray past an edge
-        for (unsigned y = 0; y < 40; ++y)
-            for (unsigned x = 0; x < 60; ++x) {
-                lit += b.at(x, y)[1];
-                if (std::abs(a.at(x, y)[1] - b.at(x, y)[1]) > 1e-4f * (b.at(x, y)[1] + 1e-3f))
-                    ++differ;
-            }
-        EXPECT_GT(lit, 100);
-        EXPECT_LE(differ, 5u);
+    for (const bool cull : {false, true}) {
+        InstancedFile file;
+        const test::TestScene shared =
+            seen(file.load({.cull_back_faces = cull, .storage = MeshStorage::shared}));
+        const test::TestScene copied =
+            seen(file.load({.cull_back_faces = cull, .storage = MeshStorage::copied}));
+        EXPECT_EQ(shared.scene.instances.size(), cull ? 4u : 5u);  // but for the mirrored one
+        FOR_EACH_DEVICE(device) {
+            RenderOptions options;
+            options.sampler = "exhaustive";
+            options.spp = 1;
+            const Image a = test::render(device, shared, options).image;
+            const Image b = test::render(device, copied, options).image;
+            double lit = 0;
+            std::size_t differ = 0;  // where rounding takes a ray past an edge
+            for (unsigned y = 0; y < 40; ++y)
+                for (unsigned x = 0; x < 60; ++x) {
+                    lit += b.at(x, y)[1];
+                    if (std::abs(a.at(x, y)[1] - b.at(x, y)[1]) > 1e-4f * (b.at(x, y)[1] + 1e-3f))
+                        ++differ;
+                }
+            EXPECT_GT(lit, 100);
+            EXPECT_LE(differ, 5u);
+        }
     }
 }
 
@@ -344,10 +350,10 @@ TEST(instances, save_memory) {
     InstancedFile file;
     for (int i = 0; i < 40'000; ++i)
         file.add_place(glm::translate(glm::dmat4(1), {i % 100, i / 100, -5}));
-    const Scene scene = file.load(MeshStorage::automatic, 64 << 20);
+    const Scene scene = file.load({.most_bytes = 64 << 20});
     EXPECT_EQ(scene.instances.size(), 40'005u);
     try {
-        (void)file.load(MeshStorage::copied, 64 << 20);
+        (void)file.load({.storage = MeshStorage::copied, .most_bytes = 64 << 20});
         ADD_FAILURE() << "copies fit";
     } catch (const InputError& error) {
         EXPECT_NE(std::string(error.what()).find("GiB of memory"), std::string::npos);

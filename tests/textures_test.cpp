@@ -556,6 +556,7 @@ TEST(textures, agree_with_the_reference) {
     add(fence, MAP_BASE_COLOR, true, LEVELS_FINEST);
     add(scene.triangle_materials[4], MAP_EMISSION, true, LEVELS_BLENDED);
     scene.materials[fence].cutoff = 0.5f;
+    scene.materials[fence].culled = 1;
     find_alpha(scene);
     ASSERT_EQ(scene.alpha_triangles.size(), 2u);
     add_emitters(scene, 0);
@@ -567,6 +568,38 @@ TEST(textures, agree_with_the_reference) {
         Verifier verifier(device, scene, base.camera, options);
         for (const Check& check : verifier.all())
             if (check.tested()) test::expect_pass(check);
+    }
+}
+
+// A square before another one, of which a half shows its back and is not seen: rays from the square
+// behind meet that half's front, and the back of the other one. Primary rays one by one, and in
+// packets.
+TEST(textures, culled_in_every_ray) {
+    Scene scene = square();
+    scene.materials[0].culled = 1;
+    std::swap(scene.indices[1], scene.indices[2]);
+    add_blue_behind(scene);
+    scene.materials[1].culled = 0;
+    find_alpha(scene);
+    ASSERT_EQ(scene.alpha_triangles.size(), 2u);
+    Scene tilted = scene;
+    tilted.lights[0].axis = float4(glm::normalize(glm::vec3(-1)), 0);
+    View perspective;
+    perspective.half_height = 1 / 3.;
+    perspective.to_world[3] = glm::dvec4(0, 0, 3, 1);
+    FOR_EACH_DEVICE(device)
+    for (const Camera& camera : {camera_on(1), make_camera(perspective, 64, 64)}) {
+        RenderOptions options;
+        options.sampler = "exhaustive";
+        options.spp = 1;
+        const float lit = 1 / static_cast<float>(M_PI);
+        const auto color = [&](const Scene& seen, unsigned x, unsigned y) {
+            const Image image = test::render(device, {seen, camera, 64, 64}, options).image;
+            return glm::vec3(image.at(x, y)[0], image.at(x, y)[1], image.at(x, y)[2]);
+        };
+        expect_near(color(scene, 50, 20), glm::vec3(lit));
+        expect_near(color(scene, 20, 50), glm::vec3(0));
+        expect_near(color(tilted, 20, 50), {0, 0, lit / std::sqrt(3.f)});
     }
 }
 

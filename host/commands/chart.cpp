@@ -44,6 +44,7 @@ std::string view_options(const ChartArguments& arguments, const LoadedScene& loa
         out += fmt::format(" --shift {},{}", scene.shift.first, scene.shift.second);
     if (scene.emitter_points) out += fmt::format(" --emitter-points {}", *scene.emitter_points);
     if (scene.seconds) out += fmt::format(" --at {}", *scene.seconds);
+    if (scene.cull_back_faces) out += " --cull-back-faces";
     if (scene.storage != MeshStorage::automatic)
         out += scene.storage == MeshStorage::shared ? " --instances shared" : " --instances copied";
     if (scene.lamp_scale != 1) out += fmt::format(" --lamp-scale {}", scene.lamp_scale);

@@ -22,6 +22,7 @@ struct SceneArguments {
     std::optional<unsigned> emitter_points;
     std::optional<double> seconds;  // of the file's first animation; none: at rest
     double lamp_scale = 1;          // of punctual lights' intensities
+    bool cull_back_faces = false;
     MeshStorage storage = MeshStorage::automatic;
     std::string device;
     unsigned threads = 0;

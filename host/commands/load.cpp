@@ -51,6 +51,7 @@ LoadedScene load(const SceneArguments& arguments, bool quiet) {
         Progress progress("loading", quiet);
         scene = load_scene(arguments.file, {.seconds = arguments.seconds,
                                             .lamp_scale = arguments.lamp_scale,
+                                            .cull_back_faces = arguments.cull_back_faces,
                                             .storage = arguments.storage,
                                             .report = [&](double share) { progress.set(share); }});
     }

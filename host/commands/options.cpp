@@ -102,6 +102,9 @@ void add_view(CLI::App& command, SceneArguments& scene, unsigned height = 512) {
                     "multiply what point, spot and directional lights emit; 0.00146413 takes back "
                     "the 683 lm/W of Blender's export, which emissive surfaces do not get")
         ->check(number(1e-12, 1e12));
+    command.add_flag("--cull-back-faces", scene.cull_back_faces,
+                     "no ray meets the back of what is not doubleSided, as in viewers of glTF "
+                     "(default: all is seen from both sides, as in Blender)");
     command
         .add_option("--instances", scene.storage,
                     "meshes that stand in several places: shared (stored once), copied (faster to "

@@ -89,7 +89,10 @@ void Tracer::test(uint triangle, const Ray& ray, std::optional<Hit>& best) const
 
 // What is partly there is so by chance, but for one ray always alike.
 bool Tracer::is_there(const Ray& ray, const Hit& hit) const {
-    const float cutoff = scene_.materials[Triangle(scene_, hit.triangle).material()].cutoff;
+    const Triangle triangle(scene_, hit.triangle);
+    const Material& material = scene_.materials[triangle.material()];
+    if (material.culled != 0 && glm::dot(triangle.face(), ray.direction) > 0) return false;
+    const float cutoff = material.cutoff;
     if (cutoff == 0) return true;
     const double alpha = alpha_at(scene_, hit);
     if (cutoff > 0) return alpha >= cutoff;

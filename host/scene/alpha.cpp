@@ -14,8 +14,9 @@ AlphaTriangle alpha_of(const Scene& scene, std::size_t triangle) {
         out.alphas[k] = scene.materials[material].alpha *
                         (scene.colors.empty() ? 1 : scene.colors[corner[k]].a);
     out.second.z = scene.materials[material].cutoff;
+    out.culled = scene.materials[material].culled;
     out.texture = NO_TEXTURE;
-    if (scene.maps.empty()) return out;
+    if (scene.maps.empty() || out.second.z == 0) return out;
     const TextureMap& map = scene.maps[MAP_KIND_COUNT * material + MAP_BASE_COLOR];
     out.texture = map.texture;
     if (map.texture == NO_TEXTURE) return out;
@@ -32,6 +33,7 @@ AlphaTriangle alpha_of(const Scene& scene, std::size_t triangle) {
 
 // Whether rays may pass: not where all is there without asking a texture.
 bool may_pass(const AlphaTriangle& t) {
+    if (t.culled != 0) return true;
     const float least = std::min({t.alphas.x, t.alphas.y, t.alphas.z});
     return t.texture != NO_TEXTURE || least < (t.second.z > 0 ? t.second.z : 1.f);
 }
@@ -42,7 +44,8 @@ void find_alpha(Scene& scene) {
     scene.alpha_triangles.clear();
     scene.alpha_of.clear();
     for (std::size_t t = 0; t < scene.triangle_count(); ++t) {
-        if (scene.materials[scene.triangle_materials[t]].cutoff == 0) continue;
+        const Material& material = scene.materials[scene.triangle_materials[t]];
+        if (material.cutoff == 0 && material.culled == 0) continue;
         const AlphaTriangle own = alpha_of(scene, t);
         if (!may_pass(own)) continue;
         if (scene.alpha_of.empty()) scene.alpha_of.assign(scene.triangle_count(), NO_ALPHA);

@@ -23,6 +23,7 @@ enum class MeshStorage { automatic, shared, copied };
 struct LoadOptions {
     std::optional<double> seconds = {};  // the moment of the first animation; none: all at rest
     double lamp_scale = 1;               // of punctual lights' intensities
+    bool cull_back_faces = false;        // of materials that are not doubleSided
     MeshStorage storage = MeshStorage::automatic;
     std::size_t most_bytes = 0;  // that triangles, or textures, may need; 0: what the machine has
     std::function<void(double)> report = {};  // gets the share done now and then

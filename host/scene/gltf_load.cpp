@@ -62,6 +62,7 @@ class Loader {
         for (const tinygltf::Material& material : model_.materials) add_material(material);
         scene_.materials.push_back(default_material());
         scene_.material_names.emplace_back();
+        if (options_.cull_back_faces) scene_.materials.back().culled = 1;
         choose_shared();
         count_all();
         check_size();
@@ -102,6 +103,7 @@ class Loader {
         // A cutoff of 0 leaves everything there.
         if (in.alphaMode == "MASK") m.cutoff = static_cast<float>(in.alphaCutoff);
         if (in.alphaMode == "BLEND") m.cutoff = -1;
+        if (options_.cull_back_faces && !in.doubleSided) m.culled = 1;
         const tinygltf::Value& specular = extension(in.extensions, "KHR_materials_specular");
         m.specular = number(specular, "specularFactor", 1);
         m.reflectance = reflectance(extension(in.extensions, "KHR_materials_ior"), specular);
@@ -359,7 +361,7 @@ class Loader {
         for (const glm::dmat4& instance : mesh_instances(file_, node, accessors_)) {
             const glm::dmat4 to_world = (skinned ? glm::dmat4(1) : pose_.to_world(node)) * instance;
             check_transform(to_world, node);
-            if (!is_shared_[mesh] || !is_well_conditioned(glm::dmat3(to_world))) {
+            if (!is_shared_[mesh] || !can_be_instance(glm::dmat3(to_world))) {
                 copies.push_back(to_world);
                 continue;
             }
@@ -373,8 +375,10 @@ class Loader {
         for (const glm::dmat4& to_world : copies) add_mesh(node, to_world);
     }
 
-    // Whether single precision can take rays to a mesh's frame and normals back.
-    static bool is_well_conditioned(const glm::dmat3& m) {
+    // Whether single precision can take rays to a mesh's frame and normals back, and its triangles
+    // face the same side there.
+    [[nodiscard]] bool can_be_instance(const glm::dmat3& m) const {
+        if (options_.cull_back_faces && glm::determinant(m) < 0) return false;
         const auto norm = [](const glm::dmat3& a) {
             return std::sqrt(glm::dot(a[0], a[0]) + glm::dot(a[1], a[1]) + glm::dot(a[2], a[2]));
         };

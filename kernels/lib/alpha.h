@@ -23,13 +23,17 @@ static float ray_fraction(float3 origin, float3 direction, uint triangle, uint s
 }
 
 // Whether the triangle is there, where the ray meets it, with those weights of its vertices 1 and
-// 2. The texture's finest level says so for rays of every kind: what is there does not depend on
-// who looks. Of a surface that is partly there everywhere, it is for that part of all rays.
-static bool is_there(float3 origin, float3 direction, uint triangle,
-                     float2 weights ALPHA_PARAMETERS) {
+// 2; `behind`: it meets its back. The texture's finest level says so for rays of every kind: what
+// is there does not depend on who looks. Of a surface that is partly there everywhere, it is for
+// that part of all rays.
+static bool is_there(float3 origin, float3 direction, uint triangle, float2 weights,
+                     bool behind ALPHA_PARAMETERS) {
     const uint index = alpha_of[triangle];
     if (index == NO_ALPHA) return true;
     __global const AlphaTriangle* t = alpha_triangles + index;
+    if (behind && t->culled) return false;
+    const float cutoff = t->second.z;
+    if (cutoff == 0.0f) return true;
     const float4 alphas = t->alphas;
     float alpha =
         alphas.x * (1.0f - weights.x - weights.y) + alphas.y * weights.x + alphas.z * weights.y;
@@ -38,7 +42,6 @@ static bool is_there(float3 origin, float3 direction, uint triangle,
         const float2 uv = t->first.xy + t->first.zw * weights.x + t->second.xy * weights.y;
         alpha *= sample_level(alpha_texels, texture, 0u, uv, texture->magnified_linear).w;
     }
-    const float cutoff = t->second.z;
     if (cutoff > 0.0f) return alpha >= cutoff;
     return ray_fraction(origin, direction, triangle, alpha_salt) < alpha;
 }

@@ -191,12 +191,17 @@ static BlockHits hit_block(const PreparedBlock* b, float3 direction, float size,
     return hits;
 }
 
-// The weights of vertices 1 and 2 where a ray meets a triangle of a block.
-static float2 block_weights(const PreparedBlock* b, uint lane, float3 d) {
+#if HAS_ALPHA
+// is_there() for a triangle of a block.
+static bool is_block_there(const PreparedBlock* b, uint lane, float3 origin, float3 d,
+                           uint triangle ALPHA_PARAMETERS) {
 #define DOT(v) (d.x * LANE((v)[0], lane) + d.y * LANE((v)[1], lane) + d.z * LANE((v)[2], lane))
-    return (float2)(DOT(b->q), DOT(b->r)) / DOT(b->n);
+    const float n = DOT(b->n);
+    return is_there(origin, d, triangle, (float2)(DOT(b->q), DOT(b->r)) / n,
+                    n > 0.0f ALPHA_ARGUMENTS);
 #undef DOT
 }
+#endif
 
 static float largest_part(float3 v) { return max(max(fabs(v.x), fabs(v.y)), fabs(v.z)); }
 
@@ -257,8 +262,8 @@ static bool occluded(BVH_PARAMETERS, Ray ray) {
             __global const uint* triangles = (__global const uint*)(rows + 9);
             for (; found; found &= found - 1u) {
                 const uint lane = lowest(found);
-                if (is_there(traced.ray.origin, traced.ray.direction, triangles[lane],
-                             block_weights(&block, lane, traced.ray.direction) ALPHA_ARGUMENTS))
+                if (is_block_there(&block, lane, traced.ray.origin, traced.ray.direction,
+                                   triangles[lane] ALPHA_ARGUMENTS))
                     break;
             }
 #endif
@@ -318,8 +323,8 @@ static Hit closest_hit(BVH_PARAMETERS, Ray ray) {
                 const uint lane = lowest(lanes);
                 if (t[lane] >= hit.t) continue;
 #if HAS_ALPHA
-                if (!is_there(traced.ray.origin, traced.ray.direction, triangles[lane],
-                              block_weights(&ready, lane, traced.ray.direction) ALPHA_ARGUMENTS))
+                if (!is_block_there(&ready, lane, traced.ray.origin, traced.ray.direction,
+                                    triangles[lane] ALPHA_ARGUMENTS))
                     continue;
 #endif
                 hit.triangle = triangles[lane] + traced.renumber;

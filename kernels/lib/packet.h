@@ -172,9 +172,7 @@ static uint enter_children_16(__global const float_w* node, const Packet* p, uin
 // Whether a triangle of a block is there for one of the rays.
 static bool is_there_for(const Packet* p, uint ray, const PreparedBlock* b, uint lane,
                          uint triangle ALPHA_PARAMETERS) {
-    const float3 direction = direction_of(p, ray);
-    return is_there(p->origin, direction, triangle,
-                    block_weights(b, lane, direction) ALPHA_ARGUMENTS);
+    return is_block_there(b, lane, p->origin, direction_of(p, ray), triangle ALPHA_ARGUMENTS);
 }
 
 // Of the rays that hit it, those that it is there for.

@@ -26,8 +26,9 @@
     X(TextureMap, scale)                                                                           \
     X(Material, base_color) X(Material, emission) X(Material, roughness) X(Material, specular)     \
     X(Material, reflectance) X(Material, alpha) X(Material, cutoff) X(Material, unlit)              \
+    X(Material, culled)                                                                            \
     X(AlphaTriangle, first) X(AlphaTriangle, second) X(AlphaTriangle, alphas)                      \
-    X(AlphaTriangle, texture)                                                                      \
+    X(AlphaTriangle, texture) X(AlphaTriangle, culled)                                             \
     X(Instance, to_world) X(Instance, to_object) X(Instance, first) X(Instance, stored)              \
     X(Instance, mesh) X(Instance, mirrored) X(Instance, root)                                      \
     X(Light, position) X(Light, axis) X(Light, edge) X(Light, emission)                            \

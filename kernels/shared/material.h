@@ -18,7 +18,7 @@ typedef struct Material {
     float cutoff;        // above 0: it is there where alpha is not below; below 0: as much as alpha
                          // says; 0: all of it is there
     uint unlit;          // 1: the emission is its colour and gives no light
-    uint padding0;
+    uint culled;         // 1: it is not there for rays that meet its back
     uint padding1;
     uint padding2;
 } Material;

@@ -60,15 +60,15 @@ typedef struct TextureMap {
 } TextureMap;
 SHARED_SIZE(TextureMap, 48)
 
-/// A triangle of which not all is there.
+/// A triangle of which not all is there, or not for all rays.
 typedef struct AlphaTriangle {
     float4 first;   // xy: where corner 0 is on the texture; zw: from there to corner 1
     float4 second;  // xy: from corner 0 to corner 2; z: the material's cutoff
     float4 alphas;  // xyz: of the corners, times the texture's
     uint texture;   // index in Scene::textures, or NO_TEXTURE
+    uint culled;    // the material's
     uint padding0;
     uint padding1;
-    uint padding2;
 } AlphaTriangle;
 SHARED_SIZE(AlphaTriangle, 64)
 
