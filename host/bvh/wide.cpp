@@ -120,17 +120,15 @@ Child make_nothing(WideBvh& wide) {
     return {0, 1};
 }
 
-// [shared mesh] the largest coordinate, in its frame, of points within `reach` of the world's
-// origin.
-std::vector<float> reach_in_meshes(const Scene& scene, float reach) {
-    std::vector<float> largest(scene.shared_meshes.size(), 0.f);
-    for (const Instance& in : scene.instances)
-        for (const float4& row : in.to_object) {
-            float sum = 0;
-            for (int k = 0; k < 3; ++k)
-                sum += std::abs(row[k]) * (reach + std::abs(in.to_world[k].w));
-            largest[in.mesh] = std::max(largest[in.mesh], sum);
-        }
+// The largest coordinate, in the frame of an instance's mesh, of points within `reach` of the
+// world's origin.
+float reach_in_mesh(const Instance& in, float reach) {
+    float largest = 0;
+    for (const float4& row : in.to_object) {
+        float sum = 0;
+        for (int k = 0; k < 3; ++k) sum += std::abs(row[k]) * (reach + std::abs(in.to_world[k].w));
+        largest = std::max(largest, sum);
+    }
     return largest;
 }
 
@@ -165,7 +163,7 @@ class WideBuilder {
     // Returns the entries of a stack that a traversal needs.
     unsigned build() {
         if (scene_.instances.empty())
-            return (parts_[0].nodes.empty() ? make_nothing(wide_) : add_part(0, reach_)).stack;
+            return (parts_[0].nodes.empty() ? make_nothing(wide_) : add_world()).stack;
         std::vector<Bounds> boxes;
         std::vector<int> names;  // [box] the instance, or -1: what stands in the world
         if (!parts_[0].nodes.empty()) {
@@ -182,40 +180,69 @@ class WideBuilder {
         }
         if (boxes.empty()) return make_nothing(wide_).stack;
         add_top(boxes, names);
-        const std::vector<float> reach = reach_in_meshes(scene_, reach_);
-        std::vector<Child> roots;
-        unsigned deepest = 0;
-        for (std::uint32_t mesh = 0; mesh < scene_.shared_meshes.size(); ++mesh) {
-            const bool empty = parts_[1 + mesh].nodes.empty();
-            roots.push_back(empty ? Child{0, 0} : add_part(1 + mesh, 2 * reach[mesh]));
-            deepest = std::max(deepest, roots.back().stack);
-        }
-        wide_.instances = scene_.instances;
-        for (Instance& in : wide_.instances) in.root = roots[in.mesh].child;
-        return top_stack_ + deepest;
+        return top_stack_ + add_meshes();
     }
 
   private:
-    Child add_part(std::size_t part, float reach) {
-        const BinaryBvh& binary = parts_[part];
-        const Child root = Collapser(binary, wide_, padding_scale * reach, [&](const auto& leaf) {
-                               return make_block(scene_, binary, leaf, wide_);
-                           }).collapse(0);
-        parts_[part] = {};
-        return root;
+    Child add_world() {
+        const BinaryBvh& binary = parts_[0];
+        return Collapser(
+                   binary, wide_, padding_scale * reach_,
+                   [&](const BinaryNode& leaf) { return make_block(scene_, binary, leaf, wide_); })
+            .collapse(0);
+    }
+
+    // Below a root of its own. Each leaf has one block in `blocks`, however often it is added.
+    Child add_mesh(const BinaryBvh& binary, float padding, std::vector<Child>& blocks) {
+        blocks.resize(binary.nodes.size(), {0, 0});
+        return Collapser(binary, wide_, padding,
+                         [&](const BinaryNode& leaf) {
+                             Child& block =
+                                 blocks[static_cast<std::size_t>(&leaf - binary.nodes.data())];
+                             if (block.stack == 0) block = make_block(scene_, binary, leaf, wide_);
+                             return block;
+                         })
+            .collapse(0);
+    }
+
+    // Returns the entries of a stack that a traversal of any needs. A mesh whose instances are
+    // large and small has several roots: a small one's rounding, in the mesh's frame, is large, and
+    // boxes padded for it would be of no use to the others.
+    unsigned add_meshes() {
+        constexpr float alike = 16;
+        wide_.instances = scene_.instances;
+        std::vector<std::vector<std::pair<float, Instance*>>> placed(scene_.shared_meshes.size());
+        for (Instance& in : wide_.instances)
+            placed[in.mesh].emplace_back(2 * reach_in_mesh(in, reach_), &in);
+        unsigned deepest = 0;
+        for (std::size_t mesh = 0; mesh < placed.size(); ++mesh) {
+            const BinaryBvh& binary = parts_[1 + mesh];
+            if (binary.nodes.empty()) continue;
+            std::ranges::stable_sort(placed[mesh], {}, &std::pair<float, Instance*>::first);
+            std::vector<Child> blocks;
+            for (auto first = placed[mesh].begin(); first != placed[mesh].end();) {
+                const auto last = std::find_if(first, placed[mesh].end(), [&](const auto& other) {
+                    return other.first > alike * first->first;
+                });
+                const float padding = padding_scale * std::prev(last)->first;
+                const Child root = add_mesh(binary, padding, blocks);
+                deepest = std::max(deepest, root.stack);
+                for (; first != last; ++first) first->second->root = root.child;
+            }
+        }
+        return deepest;
     }
 
     // Twice the padding: matrices are rounded, too.
     void add_top(const std::vector<Bounds>& boxes, const std::vector<int>& names) {
         const BinaryBvh top = build_binary_bvh(boxes);
-        top_stack_ =
-            Collapser(top, wide_, 2 * padding_scale * reach_,
-                      [&](const BinaryNode& leaf) {
-                          const int name = names[top.triangles[leaf.first]];
-                          return name < 0 ? add_part(0, reach_) : Child{INSTANCE_CHILD + name, 1};
-                      })
-                .collapse(0)
-                .stack;
+        top_stack_ = Collapser(top, wide_, 2 * padding_scale * reach_,
+                               [&](const BinaryNode& leaf) {
+                                   const int name = names[top.triangles[leaf.first]];
+                                   return name < 0 ? add_world() : Child{INSTANCE_CHILD + name, 1};
+                               })
+                         .collapse(0)
+                         .stack;
     }
 
     const Scene& scene_;
@@ -243,8 +270,10 @@ WideBvh build_wide_bvh(const Scene& scene, unsigned width, unsigned block, float
 float reach_of(const Scene& scene, const Camera& camera) {
     float reach = glm::compMax(glm::abs(glm::vec3(camera.origin)) +
                                glm::abs(glm::vec3(camera.right)) + glm::abs(glm::vec3(camera.up)));
-    scene.for_each_extreme(
-        [&](const glm::vec3& point) { reach = std::max(reach, glm::compMax(glm::abs(point))); });
+    const Bounds bounds = scene.bounds();
+    if (!bounds.empty())
+        reach = std::max(
+            {reach, glm::compMax(glm::abs(bounds.lower)), glm::compMax(glm::abs(bounds.upper))});
     return reach;
 }
 

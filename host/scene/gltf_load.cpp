@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <glm/glm.hpp>
+#include <glm/gtc/matrix_transform.hpp>
 #include <glm/gtx/component_wise.hpp>
+#include <map>
 
 #include "error.hpp"
 #include "scene/alpha.hpp"
@@ -26,6 +28,7 @@ constexpr float farthest = 1e9f;    // m
 constexpr double vertex_bytes = 24;
 constexpr double triangle_bytes = 96;
 constexpr double instance_bytes = 512;       // its node above, too
+constexpr double place_bytes = 176;          // of an instance while it is read
 constexpr double worth_sharing = 256 << 20;  // bytes of copies
 constexpr double most_steps = 4e9;           // a minute or two
 
@@ -66,7 +69,9 @@ class Loader {
         choose_shared();
         count_all();
         check_size();
-        coordinate_sets_ = load_textures(file_, model_, used_materials(), most_bytes(), scene_);
+        coordinate_sets_ =
+            load_textures(file_, model_, used_materials(),
+                          most_bytes() - static_cast<std::size_t>(needed_bytes()), scene_);
         limit_reflectance();
         decode_meshes();
         for (const int node : nodes_) visit_node(node);
@@ -309,12 +314,15 @@ class Loader {
         whole_ = stored_.vertices + stored_.triangles;
     }
 
+    [[nodiscard]] double needed_bytes() const {
+        return stored_.bytes() + instances_ * instance_bytes + most_places_ * place_bytes;
+    }
+
     // Refuses scenes that cannot fit or take too long to read: a file of a kilobyte may ask for any
     // number of instances.
     void check_size() const {
         const auto most = static_cast<double>(most_bytes());
-        const double bytes = stored_.bytes() + instances_ * instance_bytes +
-                             most_places_ * double{sizeof(glm::dmat4)};
+        const double bytes = needed_bytes();
         constexpr double gib = 1 << 30;
         if (bytes > most)
             throw InputError(
@@ -357,28 +365,53 @@ class Loader {
     void add_instances(int node) {
         const bool skinned = model_.nodes[node].skin >= 0;
         const int mesh = model_.nodes[node].mesh;
-        std::vector<glm::dmat4> copies;
-        for (const glm::dmat4& instance : mesh_instances(file_, node, accessors_)) {
-            const glm::dmat4 to_world = (skinned ? glm::dmat4(1) : pose_.to_world(node)) * instance;
-            check_transform(to_world, node);
-            if (!is_shared_[mesh] || !can_be_instance(glm::dmat3(to_world))) {
-                copies.push_back(to_world);
-                continue;
-            }
-            scene_.instances.push_back(make_instance(to_world));
-            scene_.instances.back().mesh = static_cast<std::uint32_t>(mesh);  // the file's, for now
+        std::vector<glm::dmat4> places = mesh_instances(file_, node, accessors_);
+        std::size_t copies = 0;
+        for (glm::dmat4& place : places) {
+            place = (skinned ? glm::dmat4(1) : pose_.to_world(node)) * place;
+            check_transform(place, node);
+            if (is_shared_[mesh] && !can_be_instance(mesh, glm::dmat3(place))) ++copies;
         }
-        if (is_shared_[mesh] && !copies.empty()) {  // which nobody has counted yet
-            count_copies(node, static_cast<double>(copies.size()));
+        if (copies > 0) {  // which nobody has counted yet
+            count_copies(node, static_cast<double>(copies));
             check_size();
         }
-        for (const glm::dmat4& to_world : copies) add_mesh(node, to_world);
+        for (const glm::dmat4& place : places) {
+            if (!is_shared_[mesh] || !can_be_instance(mesh, glm::dmat3(place))) {
+                add_mesh(node, place);
+                continue;
+            }
+            scene_.instances.push_back(make_instance(glm::translate(place, centre_of(node))));
+            scene_.instances.back().mesh = static_cast<std::uint32_t>(mesh);  // the file's, for now
+        }
+    }
+
+    // Of a shared mesh, in its own frame: it is stored about that, for rays are rounded relative to
+    // an instance's place.
+    const glm::dvec3& centre_of(int node) {
+        const int mesh = model_.nodes[node].mesh;
+        const auto [found, is_new] = centres_.try_emplace(mesh, 0.0);
+        if (!is_new) return found->second;
+        Bounds bounds;
+        const auto& primitives = model_.meshes[mesh].primitives;
+        for (std::size_t p = 0; p < primitives.size(); ++p)
+            if (is_rendered(primitives[p]))
+                for (const glm::vec4& v : accessors_.vectors(
+                         primitives[p].attributes.at("POSITION"), Attribute::position,
+                         fmt::format("meshes[{}].primitives[{}].attributes.POSITION", mesh, p)))
+                    bounds.add(glm::vec3(v));
+        found->second = glm::dvec3(bounds.centre());
+        return found->second;
     }
 
     // Whether single precision can take rays to a mesh's frame and normals back, and its triangles
-    // face the same side there.
-    [[nodiscard]] bool can_be_instance(const glm::dmat3& m) const {
-        if (options_.cull_back_faces && glm::determinant(m) < 0) return false;
+    // face the same side there, if it matters.
+    [[nodiscard]] bool can_be_instance(int mesh, const glm::dmat3& m) const {
+        if (glm::determinant(m) < 0 &&
+            std::ranges::any_of(model_.meshes[mesh].primitives, [&](const auto& primitive) {
+                return scene_.materials[material_of(primitive)].culled != 0;
+            }))
+            return false;
         const auto norm = [](const glm::dmat3& a) {
             return std::sqrt(glm::dot(a[0], a[0]) + glm::dot(a[1], a[1]) + glm::dot(a[2], a[2]));
         };
@@ -387,29 +420,28 @@ class Loader {
         return norm(m) * norm(inverse) < most && norm(m) < 1e6 && norm(inverse) < 1e6;
     }
 
-    // Stores the meshes that stand in several places, behind all others, and completes their
-    // instances.
+    // Stores the meshes that have instances, behind all others, and completes these.
     void add_shared_meshes() {
         std::vector<std::uint32_t> numbers(model_.meshes.size(), ~0u);  // in the scene
         for (const int node : nodes_) {
             const int mesh = model_.nodes[node].mesh;
-            if (mesh < 0 || !is_shared_[mesh] || numbers[mesh] != ~0u) continue;
+            if (mesh < 0 || !centres_.contains(mesh) || numbers[mesh] != ~0u) continue;
             numbers[mesh] = static_cast<std::uint32_t>(scene_.shared_meshes.size());
             const std::size_t vertices = scene_.vertices.size();
-            SharedMesh shared{};
-            shared.first_triangle = static_cast<std::uint32_t>(scene_.triangle_count());
-            shared.first_vertex = static_cast<std::uint32_t>(vertices);
-            add_mesh(node, glm::dmat4(1));
-            shared.triangle_count =
-                static_cast<std::uint32_t>(scene_.triangle_count() - shared.first_triangle);
+            const std::size_t triangles = scene_.triangle_count();
+            add_mesh(node, glm::translate(glm::dmat4(1), -centre_of(node)));
+            SharedMesh shared{static_cast<std::uint32_t>(triangles),
+                              static_cast<std::uint32_t>(scene_.triangle_count() - triangles),
+                              static_cast<std::uint32_t>(vertices),
+                              static_cast<std::uint32_t>(scene_.vertices.size() - vertices),
+                              {}};
             for (std::size_t v = vertices; v < scene_.vertices.size(); ++v)
                 shared.bounds.add(scene_.vertices[v]);
             scene_.shared_meshes.push_back(shared);
         }
         std::size_t next = scene_.triangle_count();
         for (Instance& in : scene_.instances) {
-            const std::uint32_t mesh = in.mesh;
-            in.mesh = numbers[mesh];
+            in.mesh = numbers[in.mesh];
             const SharedMesh& shared = scene_.shared_meshes[in.mesh];
             in.stored = shared.first_triangle;
             in.first = static_cast<std::uint32_t>(next);
@@ -417,13 +449,12 @@ class Loader {
             if (next >= ~0u)
                 throw InputError("{}: more than 2^32 triangles, instances counted one by one",
                                  scene_.file);
-            for (int k = 0; k < 8; ++k)
-                if (!(glm::compMax(glm::abs(point_to_world(in, shared.bounds.corner(k)))) <=
-                      farthest))
-                    throw InputError(
-                        "{}: meshes[{}]: an instance is out of range in the world: more than {}",
-                        scene_.file, mesh, farthest);
         }
+        const Bounds bounds = scene_.bounds();
+        if (!bounds.empty() && !(std::max(glm::compMax(glm::abs(bounds.lower)),
+                                          glm::compMax(glm::abs(bounds.upper))) <= farthest))
+            throw InputError("{}: an instance of a mesh is out of range in the world: more than {}",
+                             scene_.file, farthest);
     }
 
     static Instance make_instance(const glm::dmat4& to_world) {
@@ -758,6 +789,7 @@ class Loader {
     Scene scene_;
     std::vector<int> nodes_;
     std::vector<unsigned> coordinate_sets_;  // [set of Scene::coordinates] n of TEXCOORD_n
+    std::map<int, glm::dvec3> centres_;      // of shared meshes that have instances
     std::vector<bool> is_shared_;            // [mesh] stored once
     Size stored_;                            // vertices and triangles, or what will be
     double instances_ = 0;                   // that share these

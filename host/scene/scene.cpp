@@ -34,19 +34,19 @@ std::size_t Scene::seen_triangle_count() const {
     return count;
 }
 
-void Scene::for_each_extreme(const std::function<void(glm::vec3)>& add) const {
+Bounds Scene::bounds() const {
     const std::size_t own =
         shared_meshes.empty() ? vertices.size() : shared_meshes.front().first_vertex;
-    for (std::size_t v = 0; v < own; ++v) add(vertices[v]);
-    for (const Instance& in : instances) {
-        const Bounds& mesh = shared_meshes[in.mesh].bounds;
-        for (int k = 0; k < 8; ++k) add(point_to_world(in, mesh.corner(k)));
-    }
-}
-
-Bounds Scene::bounds() const {
     Bounds bounds;
-    for_each_extreme([&](const glm::vec3& point) { bounds.add(point); });
+    for (std::size_t v = 0; v < own; ++v) bounds.add(vertices[v]);
+    for (const Instance& in : instances) {
+        const SharedMesh& mesh = shared_meshes[in.mesh];
+        Bounds with_box = bounds;
+        for (int k = 0; k < 8; ++k) with_box.add(point_to_world(in, mesh.bounds.corner(k)));
+        if (with_box.lower == bounds.lower && with_box.upper == bounds.upper) continue;
+        for (std::size_t v = 0; v < mesh.vertex_count; ++v)
+            bounds.add(point_to_world(in, vertices[mesh.first_vertex + v]));
+    }
     return bounds;
 }
 

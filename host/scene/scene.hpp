@@ -4,7 +4,6 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <glm/glm.hpp>
 #include <optional>
 #include <string>
@@ -57,7 +56,7 @@ struct Bounds {
 /// light.
 struct SharedMesh {
     std::uint32_t first_triangle, triangle_count;  // its run of the scene's
-    std::uint32_t first_vertex;
+    std::uint32_t first_vertex, vertex_count;      // likewise
     Bounds bounds;
 };
 
@@ -102,8 +101,7 @@ struct Scene {
     }
     /// As many as are seen: instances counted one by one.
     [[nodiscard]] std::size_t seen_triangle_count() const;
-    /// Calls `add` with points whose box holds all that is seen.
-    void for_each_extreme(const std::function<void(glm::vec3)>& add) const;
+    /// Of all that is seen.
     [[nodiscard]] Bounds bounds() const;
     /// Whether a surface point's material is its own: its textures and vertex colours say more than
     /// its triangle's does.

@@ -23,10 +23,11 @@ static float ray_fraction(float3 origin, float3 direction, uint triangle, uint s
 }
 
 // Whether the triangle is there, where the ray meets it, with those weights of its vertices 1 and
-// 2; `behind`: it meets its back. The texture's finest level says so for rays of every kind: what
-// is there does not depend on who looks. Of a surface that is partly there everywhere, it is for
-// that part of all rays.
-static bool is_there(float3 origin, float3 direction, uint triangle, float2 weights,
+// 2; `behind`: it meets its back; `seen`: the triangle's index as seen, which is another one in
+// each instance. The texture's finest level says so for rays of every kind: what is there does not
+// depend on who looks. Of a surface that is partly there everywhere, it is for that part of all
+// rays.
+static bool is_there(float3 origin, float3 direction, uint triangle, uint seen, float2 weights,
                      bool behind ALPHA_PARAMETERS) {
     const uint index = alpha_of[triangle];
     if (index == NO_ALPHA) return true;
@@ -43,7 +44,7 @@ static bool is_there(float3 origin, float3 direction, uint triangle, float2 weig
         alpha *= sample_level(alpha_texels, texture, 0u, uv, texture->magnified_linear).w;
     }
     if (cutoff > 0.0f) return alpha >= cutoff;
-    return ray_fraction(origin, direction, triangle, alpha_salt) < alpha;
+    return ray_fraction(origin, direction, seen, alpha_salt) < alpha;
 }
 #else
 #define ALPHA_PARAMETERS

@@ -194,10 +194,10 @@ static BlockHits hit_block(const PreparedBlock* b, float3 direction, float size,
 #if HAS_ALPHA
 // is_there() for a triangle of a block.
 static bool is_block_there(const PreparedBlock* b, uint lane, float3 origin, float3 d,
-                           uint triangle ALPHA_PARAMETERS) {
+                           uint triangle, uint seen ALPHA_PARAMETERS) {
 #define DOT(v) (d.x * LANE((v)[0], lane) + d.y * LANE((v)[1], lane) + d.z * LANE((v)[2], lane))
     const float n = DOT(b->n);
-    return is_there(origin, d, triangle, (float2)(DOT(b->q), DOT(b->r)) / n,
+    return is_there(origin, d, triangle, seen, (float2)(DOT(b->q), DOT(b->r)) / n,
                     n > 0.0f ALPHA_ARGUMENTS);
 #undef DOT
 }
@@ -263,7 +263,8 @@ static bool occluded(BVH_PARAMETERS, Ray ray) {
             for (; found; found &= found - 1u) {
                 const uint lane = lowest(found);
                 if (is_block_there(&block, lane, traced.ray.origin, traced.ray.direction,
-                                   triangles[lane] ALPHA_ARGUMENTS))
+                                   triangles[lane],
+                                   triangles[lane] + traced.renumber ALPHA_ARGUMENTS))
                     break;
             }
 #endif
@@ -324,7 +325,8 @@ static Hit closest_hit(BVH_PARAMETERS, Ray ray) {
                 if (t[lane] >= hit.t) continue;
 #if HAS_ALPHA
                 if (!is_block_there(&ready, lane, traced.ray.origin, traced.ray.direction,
-                                    triangles[lane] ALPHA_ARGUMENTS))
+                                    triangles[lane],
+                                    triangles[lane] + traced.renumber ALPHA_ARGUMENTS))
                     continue;
 #endif
                 hit.triangle = triangles[lane] + traced.renumber;

@@ -171,17 +171,17 @@ static uint enter_children_16(__global const float_w* node, const Packet* p, uin
 #if HAS_ALPHA
 // Whether a triangle of a block is there for one of the rays.
 static bool is_there_for(const Packet* p, uint ray, const PreparedBlock* b, uint lane,
-                         uint triangle ALPHA_PARAMETERS) {
-    return is_block_there(b, lane, p->origin, direction_of(p, ray), triangle ALPHA_ARGUMENTS);
+                         uint triangle, uint seen ALPHA_PARAMETERS) {
+    return is_block_there(b, lane, p->origin, direction_of(p, ray), triangle, seen ALPHA_ARGUMENTS);
 }
 
 // Of the rays that hit it, those that it is there for.
 static int16 there_for_all(const Packet* p, int16 hit, const PreparedBlock* b, uint lane,
-                           uint triangle ALPHA_PARAMETERS) {
+                           uint triangle, uint seen ALPHA_PARAMETERS) {
     if (alpha_of[triangle] == NO_ALPHA) return hit;
     for (uint rays = lanes_16(hit); rays; rays &= rays - 1u) {
         const uint ray = lowest(rays);
-        if (!is_there_for(p, ray, b, lane, triangle ALPHA_ARGUMENTS)) INT_LANE(hit, ray) = 0;
+        if (!is_there_for(p, ray, b, lane, triangle, seen ALPHA_ARGUMENTS)) INT_LANE(hit, ray) = 0;
     }
     return hit;
 }
@@ -214,7 +214,10 @@ static bool occlude_packet(BVH_PARAMETERS, Packet* p) {
 #if HAS_INSTANCES
     Packet inside;  // an instance; then p points to it
     Packet* const world = p;
-    int outside = 0;  // as in occluded()
+    int outside = 0;     // as in occluded()
+    uint renumber = 0u;  // to be added to the indices of triangles
+#elif HAS_ALPHA
+    const uint renumber = 0u;
 #endif
     while (top > 0) {
 #if HAS_INSTANCES
@@ -222,6 +225,7 @@ static bool occlude_packet(BVH_PARAMETERS, Packet* p) {
             leave_instance(p, world);
             p = world;
             outside = 0;
+            renumber = 0u;
         }
 #endif
         const int entry = stack[--top];
@@ -233,6 +237,7 @@ static bool occlude_packet(BVH_PARAMETERS, Packet* p) {
             inside = packet_in_instance(world, in);
             p = &inside;
             outside = top;
+            renumber = in->first - in->stored;
             stack[top++] = in->root;  // for the same rays
             continue;
         }
@@ -253,7 +258,9 @@ static bool occlude_packet(BVH_PARAMETERS, Packet* p) {
 #if HAS_ALPHA
                     for (; found; found &= found - 1u) {
                         const uint t = lowest(found);
-                        if (is_there_for(p, lane, &block, t, names[t] ALPHA_ARGUMENTS)) break;
+                        if (is_there_for(p, lane, &block, t, names[t],
+                                         names[t] + renumber ALPHA_ARGUMENTS))
+                            break;
                     }
 #endif
                     if (!found) continue;
@@ -264,7 +271,8 @@ static bool occlude_packet(BVH_PARAMETERS, Packet* p) {
                 for (uint triangle = 0u; triangle < triangles; ++triangle) {
                     int16 hit = hit_triangle(&block, triangle, p).hit;
 #if HAS_ALPHA
-                    hit = there_for_all(p, hit, &block, triangle, names[triangle] ALPHA_ARGUMENTS);
+                    hit = there_for_all(p, hit, &block, triangle, names[triangle],
+                                        names[triangle] + renumber ALPHA_ARGUMENTS);
 #endif
                     const uint rays = lanes_16(hit);
                     if (!rays) continue;
@@ -352,8 +360,8 @@ static void closest_hits(BVH_PARAMETERS, Packet* p, int16* triangles) {
                         const uint triangle = lowest(lanes);
                         if (LANE(t, triangle) >= LANE(p->end, lane)) continue;
 #if HAS_ALPHA
-                        if (!is_there_for(p, lane, &block, triangle,
-                                          (uint)names[triangle] ALPHA_ARGUMENTS))
+                        if (!is_there_for(p, lane, &block, triangle, (uint)names[triangle],
+                                          (uint)(names[triangle] + renumber) ALPHA_ARGUMENTS))
                             continue;
 #endif
                         SET_LANE(p->end, lane, LANE(t, triangle));
@@ -365,8 +373,8 @@ static void closest_hits(BVH_PARAMETERS, Packet* p, int16* triangles) {
                 for (uint triangle = 0u; triangle < all; ++triangle) {
                     TriangleHits hits = hit_triangle(&block, triangle, p);
 #if HAS_ALPHA
-                    hits.hit = there_for_all(p, hits.hit, &block, triangle,
-                                             (uint)names[triangle] ALPHA_ARGUMENTS);
+                    hits.hit = there_for_all(p, hits.hit, &block, triangle, (uint)names[triangle],
+                                             (uint)(names[triangle] + renumber) ALPHA_ARGUMENTS);
 #endif
                     if (!lanes_16(hits.hit)) continue;
                     p->end = select(p->end, hits.t / hits.n, hits.hit);

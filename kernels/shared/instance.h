@@ -8,7 +8,7 @@ SHARED_BEGIN
 
 /// A place where a mesh stands that is stored once, in a frame of its own. Its triangles have
 /// indices of their own, behind those of all that are stored: `first` + k is triangle `stored` + k.
-/// In arrays of instances, `first` increases.
+/// In arrays of instances, `first` never decreases.
 typedef struct Instance {
     float4 to_world[3];   // rows of the matrix from the mesh's frame to the world; w: its place, m
     float4 to_object[3];  // rows, xyz, of the inverse of its first three columns
