@@ -164,6 +164,7 @@ class WideBuilder {
     unsigned build() {
         if (scene_.instances.empty())
             return (parts_[0].nodes.empty() ? make_nothing(wide_) : add_world()).stack;
+        wide_.instances = scene_.instances;
         std::vector<Bounds> boxes;
         std::vector<int> names;  // [box] the instance, or -1: what stands in the world
         if (!parts_[0].nodes.empty()) {
@@ -179,30 +180,27 @@ class WideBuilder {
             names.push_back(static_cast<int>(i));
         }
         if (boxes.empty()) return make_nothing(wide_).stack;
-        add_top(boxes, names);
-        return top_stack_ + add_meshes();
+        const unsigned above = add_top(boxes, names);
+        return above + add_meshes();
     }
 
   private:
     Child add_world() {
-        const BinaryBvh& binary = parts_[0];
-        return Collapser(
-                   binary, wide_, padding_scale * reach_,
-                   [&](const BinaryNode& leaf) { return make_block(scene_, binary, leaf, wide_); })
-            .collapse(0);
+        const auto block = [&](const BinaryNode& leaf) {
+            return make_block(scene_, parts_[0], leaf, wide_);
+        };
+        return Collapser(parts_[0], wide_, padding_scale * reach_, block).collapse(0);
     }
 
     // Below a root of its own. Each leaf has one block in `blocks`, however often it is added.
     Child add_mesh(const BinaryBvh& binary, float padding, std::vector<Child>& blocks) {
         blocks.resize(binary.nodes.size(), {0, 0});
-        return Collapser(binary, wide_, padding,
-                         [&](const BinaryNode& leaf) {
-                             Child& block =
-                                 blocks[static_cast<std::size_t>(&leaf - binary.nodes.data())];
-                             if (block.stack == 0) block = make_block(scene_, binary, leaf, wide_);
-                             return block;
-                         })
-            .collapse(0);
+        const auto block_of = [&](const BinaryNode& leaf) {
+            Child& block = blocks[static_cast<std::size_t>(&leaf - binary.nodes.data())];
+            if (block.stack == 0) block = make_block(scene_, binary, leaf, wide_);
+            return block;
+        };
+        return Collapser(binary, wide_, padding, block_of).collapse(0);
     }
 
     // Returns the entries of a stack that a traversal of any needs. A mesh whose instances are
@@ -210,7 +208,6 @@ class WideBuilder {
     // boxes padded for it would be of no use to the others.
     unsigned add_meshes() {
         constexpr float alike = 16;
-        wide_.instances = scene_.instances;
         std::vector<std::vector<std::pair<float, Instance*>>> placed(scene_.shared_meshes.size());
         for (Instance& in : wide_.instances)
             placed[in.mesh].emplace_back(2 * reach_in_mesh(in, reach_), &in);
@@ -234,22 +231,19 @@ class WideBuilder {
     }
 
     // Twice the padding: matrices are rounded, too.
-    void add_top(const std::vector<Bounds>& boxes, const std::vector<int>& names) {
+    unsigned add_top(const std::vector<Bounds>& boxes, const std::vector<int>& names) {
         const BinaryBvh top = build_binary_bvh(boxes);
-        top_stack_ = Collapser(top, wide_, 2 * padding_scale * reach_,
-                               [&](const BinaryNode& leaf) {
-                                   const int name = names[top.triangles[leaf.first]];
-                                   return name < 0 ? add_world() : Child{INSTANCE_CHILD + name, 1};
-                               })
-                         .collapse(0)
-                         .stack;
+        const auto child = [&](const BinaryNode& leaf) {
+            const int name = names[top.triangles[leaf.first]];
+            return name < 0 ? add_world() : Child{INSTANCE_CHILD + name, 1};
+        };
+        return Collapser(top, wide_, 2 * padding_scale * reach_, child).collapse(0).stack;
     }
 
     const Scene& scene_;
     float reach_;
     std::vector<BinaryBvh> parts_;
     WideBvh& wide_;
-    unsigned top_stack_ = 0;
 };
 
 }  // namespace
