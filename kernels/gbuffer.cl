@@ -218,13 +218,15 @@ KERNEL void gbuffer_trace_rays(Tiles tiles, Camera camera, uint jitter, uint pix
     write_surface(tiles, camera, surfaces, item, ray, hit.triangle, hit.t, MESH_ARGUMENTS);
 }
 
-// The same, 16 items (4 x 4 pixels) per work-item; for cameras whose rays have one origin.
+#if LANES > 1
+// The same, LANES items (neighbours in the image) per work-item; for cameras whose rays have one
+// origin.
 KERNEL void gbuffer_trace_packets(Tiles tiles, Camera camera, uint jitter, uint pixel_sample,
                                   uint seed, BVH_PARAMETERS, MESH_PARAMETERS,
                                   __global Surface* surfaces) {
-    const uint first = 16u * (uint)get_global_id(0);
-    float16 x = (float16)(0.0f), y = x, z = x, end = x;
-    for (uint lane = 0u; lane < 16u; ++lane) {
+    const uint first = LANES * (uint)get_global_id(0);
+    float_n x = (float_n)(0.0f), y = x, z = x, end = x;
+    for (uint lane = 0u; lane < LANES; ++lane) {
         if (!item_in_image(tiles, first + lane)) continue;
         const Ray ray = primary_ray(tiles, first + lane, camera, jitter, pixel_sample, seed);
         SET_LANE(x, lane, ray.direction.x);
@@ -232,13 +234,15 @@ KERNEL void gbuffer_trace_packets(Tiles tiles, Camera camera, uint jitter, uint 
         SET_LANE(z, lane, ray.direction.z);
         SET_LANE(end, lane, INFINITY);
     }
+    if (!lanes_n(end > 0.0f)) return;
     Packet packet = make_packet(camera.origin.xyz, x, y, z, end);
-    int16 triangles;
+    int_n triangles;
     closest_hits(BVH_ARGUMENTS, &packet, &triangles);
-    for (uint lane = 0u; lane < 16u; ++lane) {
+    for (uint lane = 0u; lane < LANES; ++lane) {
         if (!item_in_image(tiles, first + lane)) continue;
         const Ray ray = {packet.origin, direction_of(&packet, lane), INFINITY};
         write_surface(tiles, camera, surfaces, first + lane, ray, (uint)INT_LANE(triangles, lane),
                       LANE(packet.end, lane), MESH_ARGUMENTS);
     }
 }
+#endif

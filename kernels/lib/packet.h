@@ -1,59 +1,54 @@
 // SPDX-License-Identifier: MIT
-// 16 rays with one origin against the wide BVH of lib/bvh.h, by one work-item. Sets of rays are
+// LANES rays with one origin against the wide BVH of lib/bvh.h, by one work-item. Sets of rays are
 // integers, 1 << lane.
 #ifndef MANYLIGHT_LIB_PACKET_H
 #define MANYLIGHT_LIB_PACKET_H
 
 #include "lib/bvh.h"
 
+#if LANES > 1
+
 // So many rays, or fewer, are tested one by one against all of a node's children at once, instead
 // of all at once against one child after another.
-#define PACKET_FEW 8
+#define PACKET_FEW (LANES / 2)
 
 // Segments origin + t direction, 0 < t < end; a lane whose end is not positive holds no ray.
 typedef struct Packet {
     float3 origin;
-    float16 x, y, z;                 // directions
-    float16 size;                    // their largest parts
-    float16 ix, iy, iz, bx, by, bz;  // slabs: planes at q are crossed at q * i + b
-    int16 near_x, near_y, near_z;    // as in Prepared
-    float16 end;
+    float_n x, y, z;                 // directions
+    float_n size;                    // their largest parts
+    float_n ix, iy, iz, bx, by, bz;  // slabs: planes at q are crossed at q * i + b
+    int_n near_x, near_y, near_z;    // as in Prepared
+    float_n end;
     float3 lowest, highest;  // bounds of the inverses (ix, iy, iz) over all rays
     float furthest;          // the last end
 } Packet;
 
-static float16 safe_inverse_16(float16 d) {
-    return 1.0f / select(d, copysign((float16)(1e-20f), d), fabs(d) < 1e-20f);
+static float_n safe_inverse_n(float_n d) {
+    return 1.0f / select(d, copysign((float_n)(1e-20f), d), fabs(d) < 1e-20f);
 }
 
-static float lowest_of(float16 v) {
-    const float8 a = min(v.lo, v.hi);
-    const float4 b = min(a.lo, a.hi);
-    const float2 c = min(b.lo, b.hi);
-    return min(c.x, c.y);
-}
+static float highest_of(float_n v) { return -lowest_of(-v); }
 
-static float highest_of(float16 v) { return -lowest_of(-v); }
-
-static Packet make_packet(float3 origin, float16 x, float16 y, float16 z, float16 end) {
+static Packet make_packet(float3 origin, float_n x, float_n y, float_n z, float_n end) {
     Packet p;
     p.origin = origin;
     p.x = x;
     p.y = y;
     p.z = z;
     p.end = end;
-    p.ix = safe_inverse_16(x);
-    p.iy = safe_inverse_16(y);
-    p.iz = safe_inverse_16(z);
+    p.ix = safe_inverse_n(x);
+    p.iy = safe_inverse_n(y);
+    p.iz = safe_inverse_n(z);
     p.bx = -origin.x * p.ix;
     p.by = -origin.y * p.iy;
     p.bz = -origin.z * p.iz;
-    p.near_x = select((int16)(0), (int16)(3), p.ix < 0.0f);
-    p.near_y = select((int16)(1), (int16)(4), p.iy < 0.0f);
-    p.near_z = select((int16)(2), (int16)(5), p.iz < 0.0f);
+    p.near_x = select((int_n)(0), (int_n)(3), p.ix < 0.0f);
+    p.near_y = select((int_n)(1), (int_n)(4), p.iy < 0.0f);
+    p.near_z = select((int_n)(2), (int_n)(5), p.iz < 0.0f);
     p.size = max(max(fabs(x), fabs(y)), fabs(z));
-    const int16 none = !(end > 0.0f);
-    const float16 far = (float16)(INFINITY);
+    const int_n none = !(end > 0.0f);
+    const float_n far = (float_n)(INFINITY);
     p.lowest = (float3)(lowest_of(select(p.ix, far, none)), lowest_of(select(p.iy, far, none)),
                         lowest_of(select(p.iz, far, none)));
     p.highest = (float3)(highest_of(select(p.ix, -far, none)), highest_of(select(p.iy, -far, none)),
@@ -104,35 +99,35 @@ static uint may_enter_children(__global const float_w* node, const Packet* p, fl
 
 // The rays that enter one child.
 static uint enter_child(__global const float* lane, const Packet* p) {
-    const float16 lx = (float16)(lane[0]), hx = (float16)(lane[3 * BVH_WIDTH]);
-    const float16 ly = (float16)(lane[BVH_WIDTH]), hy = (float16)(lane[4 * BVH_WIDTH]);
-    const float16 lz = (float16)(lane[2 * BVH_WIDTH]), hz = (float16)(lane[5 * BVH_WIDTH]);
-    const float16 x0 = fma(lx, p->ix, p->bx), x1 = fma(hx, p->ix, p->bx);
-    const float16 y0 = fma(ly, p->iy, p->by), y1 = fma(hy, p->iy, p->by);
-    const float16 z0 = fma(lz, p->iz, p->bz), z1 = fma(hz, p->iz, p->bz);
-    const float16 entry = max(max(min(x0, x1), min(y0, y1)), max(min(z0, z1), (float16)(0.0f)));
-    const float16 leave = min(min(max(x0, x1), max(y0, y1)), min(max(z0, z1), p->end));
-    return lanes_16(entry <= leave);
+    const float_n lx = (float_n)(lane[0]), hx = (float_n)(lane[3 * BVH_WIDTH]);
+    const float_n ly = (float_n)(lane[BVH_WIDTH]), hy = (float_n)(lane[4 * BVH_WIDTH]);
+    const float_n lz = (float_n)(lane[2 * BVH_WIDTH]), hz = (float_n)(lane[5 * BVH_WIDTH]);
+    const float_n x0 = fma(lx, p->ix, p->bx), x1 = fma(hx, p->ix, p->bx);
+    const float_n y0 = fma(ly, p->iy, p->by), y1 = fma(hy, p->iy, p->by);
+    const float_n z0 = fma(lz, p->iz, p->bz), z1 = fma(hz, p->iz, p->bz);
+    const float_n entry = max(max(min(x0, x1), min(y0, y1)), max(min(z0, z1), (float_n)(0.0f)));
+    const float_n leave = min(min(max(x0, x1), max(y0, y1)), min(max(z0, z1), p->end));
+    return lanes_n(entry <= leave);
 }
 
 // A triangle of a block as all rays meet it.
 typedef struct TriangleHits {
-    float16 t, n;  // t and what it is to be divided by
-    int16 hit;
+    float_n t, n;  // t and what it is to be divided by
+    int_n hit;
 } TriangleHits;
 
 // hit_block() the other way round: all rays against triangle `lane` of a block.
 static TriangleHits hit_triangle(const PreparedBlock* b, uint lane, const Packet* p) {
 #define DOT(v) \
     fma(p->x, LANE((v)[0], lane), fma(p->y, LANE((v)[1], lane), p->z* LANE((v)[2], lane)))
-#define WITH_MARGIN(margin, v) fma(p->size, LANE(margin, lane), as_float16(as_int16(DOT(v)) ^ sign))
+#define WITH_MARGIN(margin, v) fma(p->size, LANE(margin, lane), as_float_n(as_int_n(DOT(v)) ^ sign))
     TriangleHits hits;
-    const float16 n = DOT(b->n);
-    const int16 sign = as_int16(n) & (int)0x80000000;
-    const float16 inside = min(min(WITH_MARGIN(b->margin_u, b->q), WITH_MARGIN(b->margin_v, b->r)),
+    const float_n n = DOT(b->n);
+    const int_n sign = as_int_n(n) & (int)0x80000000;
+    const float_n inside = min(min(WITH_MARGIN(b->margin_u, b->q), WITH_MARGIN(b->margin_v, b->r)),
                                WITH_MARGIN(b->margin_w, b->s));
     hits.n = fabs(n);
-    hits.t = as_float16(as_int(LANE(b->t, lane)) ^ sign);
+    hits.t = as_float_n(as_int(LANE(b->t, lane)) ^ sign);
     hits.hit = (inside >= 0.0f) & (hits.n > LANE(b->least_n, lane) * p->size) & (hits.t > 0.0f) &
                (hits.t < p->end * hits.n);
     return hits;
@@ -142,8 +137,8 @@ static TriangleHits hit_triangle(const PreparedBlock* b, uint lane, const Packet
 
 // The children that rays of a set enter: `sets` gets which rays, `entry` where the first does, at
 // the earliest.
-static uint enter_children_16(__global const float_w* node, const Packet* p, uint rays, int_w* sets,
-                              float_w* entry) {
+static uint enter_children_n(__global const float_w* node, const Packet* p, uint rays, int_w* sets,
+                             float_w* entry) {
     uint entered = 0u;
     if (popcount(rays) <= PACKET_FEW) {
         *entry = (float_w)(INFINITY);
@@ -176,10 +171,10 @@ static bool is_there_for(const Packet* p, uint ray, const PreparedBlock* b, uint
 }
 
 // Of the rays that hit it, those that it is there for.
-static int16 there_for_all(const Packet* p, int16 hit, const PreparedBlock* b, uint lane,
+static int_n there_for_all(const Packet* p, int_n hit, const PreparedBlock* b, uint lane,
                            uint triangle, uint seen ALPHA_PARAMETERS) {
     if (alpha_of[triangle] == NO_ALPHA) return hit;
-    for (uint rays = lanes_16(hit); rays; rays &= rays - 1u) {
+    for (uint rays = lanes_n(hit); rays; rays &= rays - 1u) {
         const uint ray = lowest(rays);
         if (!is_there_for(p, ray, b, lane, triangle, seen ALPHA_ARGUMENTS)) INT_LANE(hit, ray) = 0;
     }
@@ -207,7 +202,7 @@ static bool occlude_packet(BVH_PARAMETERS, Packet* p) {
     int stack[BVH_STACK];
     uint masks[BVH_STACK];
     int top = 0;
-    uint live = lanes_16(p->end > 0.0f);
+    uint live = lanes_n(p->end > 0.0f);
     const uint all = live;
     stack[top] = 0;
     masks[top++] = live;
@@ -269,15 +264,15 @@ static bool occlude_packet(BVH_PARAMETERS, Packet* p) {
                 }
             } else {
                 for (uint triangle = 0u; triangle < triangles; ++triangle) {
-                    int16 hit = hit_triangle(&block, triangle, p).hit;
+                    int_n hit = hit_triangle(&block, triangle, p).hit;
 #if HAS_ALPHA
                     hit = there_for_all(p, hit, &block, triangle, names[triangle],
                                         names[triangle] + renumber ALPHA_ARGUMENTS);
 #endif
-                    const uint rays = lanes_16(hit);
+                    const uint rays = lanes_n(hit);
                     if (!rays) continue;
                     live &= ~rays;
-                    p->end = select(p->end, (float16)(-1.0f), hit);
+                    p->end = select(p->end, (float_n)(-1.0f), hit);
                     if (!(mask & live)) break;
                 }
             }
@@ -288,7 +283,7 @@ static bool occlude_packet(BVH_PARAMETERS, Packet* p) {
         __global const int* children = (__global const int*)(node + 6);
         int_w sets;
         float_w near;
-        for (uint lanes = enter_children_16(node, p, mask, &sets, &near); lanes;
+        for (uint lanes = enter_children_n(node, p, mask, &sets, &near); lanes;
              lanes &= lanes - 1u) {
             const uint lane = lowest(lanes);
             stack[top] = children[lane];
@@ -302,15 +297,15 @@ static bool occlude_packet(BVH_PARAMETERS, Packet* p) {
 }
 
 // Shortens every ray to its closest hit, whose triangle `triangles` gets; ~0 where there is none.
-static void closest_hits(BVH_PARAMETERS, Packet* p, int16* triangles) {
+static void closest_hits(BVH_PARAMETERS, Packet* p, int_n* triangles) {
     int stack[BVH_STACK];
     float distance[BVH_STACK];
     uint masks[BVH_STACK];
     int top = 0;
-    *triangles = (int16)(~0);
+    *triangles = (int_n)(~0);
     stack[top] = 0;
     distance[top] = 0.0f;
-    masks[top++] = lanes_16(p->end > 0.0f);
+    masks[top++] = lanes_n(p->end > 0.0f);
 #if HAS_INSTANCES
     Packet inside;  // as in occlude_packet()
     Packet* const world = p;
@@ -376,9 +371,9 @@ static void closest_hits(BVH_PARAMETERS, Packet* p, int16* triangles) {
                     hits.hit = there_for_all(p, hits.hit, &block, triangle, (uint)names[triangle],
                                              (uint)(names[triangle] + renumber) ALPHA_ARGUMENTS);
 #endif
-                    if (!lanes_16(hits.hit)) continue;
+                    if (!lanes_n(hits.hit)) continue;
                     p->end = select(p->end, hits.t / hits.n, hits.hit);
-                    *triangles = select(*triangles, (int16)(names[triangle] + renumber), hits.hit);
+                    *triangles = select(*triangles, (int_n)(names[triangle] + renumber), hits.hit);
                     any_hit = true;
                 }
             }
@@ -389,7 +384,7 @@ static void closest_hits(BVH_PARAMETERS, Packet* p, int16* triangles) {
         __global const int* children = (__global const int*)(node + 6);
         int_w sets;
         float_w enter;
-        uint lanes = enter_children_16(node, p, mask, &sets, &enter);
+        uint lanes = enter_children_n(node, p, mask, &sets, &enter);
         float nearest = INFINITY;
         for (; lanes; lanes &= lanes - 1u) {  // the nearest child ends on top of the stack
             const uint lane = lowest(lanes);
@@ -411,5 +406,7 @@ static void closest_hits(BVH_PARAMETERS, Packet* p, int16* triangles) {
     leave_instance(p, world);
 #endif
 }
+
+#endif
 
 #endif

@@ -5,14 +5,24 @@
 #ifndef MANYLIGHT_LIB_RAYS_H
 #define MANYLIGHT_LIB_RAYS_H
 
-#include "lib/bvh.h"
+#include "lib/packet.h"
 
 #define RAY_END(rays, packet, lane) (rays)[64 * (ulong)(packet) + 48 + (lane)]
 
 // Empties a packet.
 static void clear_packet(__global float* rays, ulong packet) {
-    *(__global float16*)(rays + 64 * packet + 48) = (float16)(0.0f);
+    for (uint lane = 0u; lane < 16u; lane += LANES)
+        *(__global float_n*)(rays + 64 * packet + 48 + lane) = (float_n)(0.0f);
 }
+
+#if LANES > 1
+// LANES rays of a packet, of which `row` points to the first's direction's x.
+static Packet load_packet(__global const float4* origins, __global const float* row, uint packet) {
+    __global const float_n* lanes = (__global const float_n*)row;
+    return make_packet(origins[packet].xyz, lanes[0], lanes[16 / LANES], lanes[32 / LANES],
+                       lanes[48 / LANES]);
+}
+#endif
 
 // Puts a ray in a lane, but for its origin.
 static void put_ray(__global float* rays, ulong packet, uint lane, Ray ray) {
