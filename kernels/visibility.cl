@@ -48,7 +48,7 @@ static CellTrials load_trials(uint_n counts) {
 // The rays of a slot in the quadrants' cells from `cell` on, in the 4 x 4 of them that each is one
 // of, and in the whole quadrant. `counts`: of the quadrant's 16 cells.
 static CellTrials of_cells(__global const uint* counts, uint cell) {
-    return load_trials(vload_n(0, counts + cell));
+    return load_trials(UINTS_AT(counts + cell));
 }
 
 #if LANES == 16

@@ -12,14 +12,15 @@
 
 #if LANES == 1
 #define OF_LANES(name) name
-#define vload_n(i, pointer) ((pointer)[i])
 #else
 #define OF_LANES(name) JOIN(name, LANES)
-#define vload_n OF_LANES(vload)
 #endif
 typedef OF_LANES(float) float_n;
 typedef OF_LANES(int) int_n;
 typedef OF_LANES(uint) uint_n;
+// At a pointer to numbers in global memory that is aligned to as many; vloadN() allows for others.
+#define FLOATS_AT(pointer) (*(__global const float_n*)(pointer))
+#define UINTS_AT(pointer) (*(__global const uint_n*)(pointer))
 #define as_float_n OF_LANES(as_float)
 #define as_int_n OF_LANES(as_int)
 #define as_uint_n OF_LANES(as_uint)
@@ -137,17 +138,26 @@ static float_n zip_high(float_n a, float_n b) { return (float_n)(a.s2, b.s2, a.s
 #endif
 
 #if LANES > 1
-// Turns the rows of a square to columns: each round moves the top bit of the row's number below the
+static void zip_rows(const float_n* rows, float_n* zipped) {
+    for (uint i = 0u; i < LANES / 2u; ++i) {
+        zipped[2u * i] = zip_low(rows[i], rows[i + LANES / 2u]);
+        zipped[2u * i + 1u] = zip_high(rows[i], rows[i + LANES / 2u]);
+    }
+}
+
+// Turns the rows of a square to columns: each zip moves the top bit of the row's number below the
 // column's.
 static void transpose(float_n* rows) {
     float_n zipped[LANES];
-    for (uint size = LANES; size > 1u; size /= 2u) {
-        for (uint i = 0u; i < LANES / 2u; ++i) {
-            zipped[2u * i] = zip_low(rows[i], rows[i + LANES / 2u]);
-            zipped[2u * i + 1u] = zip_high(rows[i], rows[i + LANES / 2u]);
-        }
-        for (uint i = 0u; i < LANES; ++i) rows[i] = zipped[i];
-    }
+    zip_rows(rows, zipped);
+    zip_rows(zipped, rows);
+#if LANES == 8
+    zip_rows(rows, zipped);
+    for (uint i = 0u; i < LANES; ++i) rows[i] = zipped[i];
+#elif LANES == 16
+    zip_rows(rows, zipped);
+    zip_rows(zipped, rows);
+#endif
 }
 #endif
 
@@ -160,7 +170,7 @@ static void load_columns(__global const float* structures, uint size, uint_n ind
 #else
     for (uint lane = 0u; lane < LANES; ++lane) {
         __global const float* own = structures + (ulong)size * UINT_LANE(indices, lane);
-        for (uint k = 0u; k < 16u / LANES; ++k) columns[k * LANES + lane] = vload_n(k, own);
+        for (uint k = 0u; k < 16u / LANES; ++k) columns[k * LANES + lane] = FLOATS_AT(own + k * LANES);
     }
     for (uint k = 0u; k < 16u / LANES; ++k) transpose(columns + k * LANES);
 #endif

@@ -31,6 +31,13 @@ static uint node_entry(__global const LightNode* nodes, uint node, uint slot) {
     return (slot << 24) | node | (point ? SINGLE_POINT : 0u);
 }
 
+// A node's contribution and its weight: the root of the mean square of what a shadow ray says of
+// the contribution's luminance, less the control variate.
+typedef struct Weighed {
+    Color_n color;
+    float_n weight;
+} Weighed;
+
 // What the pixels of a group draw from.
 typedef struct Source {
     __global const LightNode* nodes;
@@ -42,10 +49,13 @@ typedef struct Source {
     Points_n points;
     int_n valid;
     float_n limit;  // of the weight times the angular size of a node that is not refined
+#if LANES > 1
+    Weighed cut_weights[CUT_CAPACITY];  // where it refines
+#endif
 } Source;
 
 static float_n seen_of(const Source* s, uint slot) {
-    return select((float_n)(0.0f), vload_n(0, s->visible + 16u * slot), s->valid);
+    return select((float_n)(0.0f), FLOATS_AT(s->visible + 16u * slot), s->valid);
 }
 
 static void add_color(Color_n* sum, Color_n c, float_n factor) {
@@ -53,13 +63,6 @@ static void add_color(Color_n* sum, Color_n c, float_n factor) {
     sum->green = fma(c.green, factor, sum->green);
     sum->blue = fma(c.blue, factor, sum->blue);
 }
-
-// A node's contribution and its weight: the root of the mean square of what a shadow ray says of
-// the contribution's luminance, less the control variate.
-typedef struct Weighed {
-    Color_n color;
-    float_n weight;
-} Weighed;
 
 static Weighed weigh(const Source* s, uint at, float_n visible) {
     __global const LightNode* node = s->nodes + at;
@@ -95,13 +98,16 @@ static void start_walk(Walk* w) { w->next_slot = w->top = w->splits = 0u; }
 // Whether there is one more node; if so, the node and its weights.
 static bool next_node(const Source* s, Walk* w, uint* node, Weighed* own, float_n* seen) {
     while (w->top > 0u || w->next_slot < s->cut_size) {
-        if (w->top == 0u) {
-            w->slot = w->next_slot++;
-            w->stack[w->top++] = s->cut[w->slot];
-        }
-        const uint at = w->stack[--w->top];
+        const bool is_cut = w->top == 0u;
+        if (is_cut) w->slot = w->next_slot++;
+        const uint at = is_cut ? s->cut[w->slot] : w->stack[--w->top];
         *seen = seen_of(s, w->slot);
-        *own = weigh(s, at, *seen);
+#if LANES > 1
+        if (is_cut && s->refines)
+            *own = s->cut_weights[w->slot];
+        else
+#endif
+            *own = weigh(s, at, *seen);
         if (!s->refines || s->nodes[at].count == 1u || w->splits == MOST_SPLITS ||
             !wants_children(s->nodes + at, &s->points, own->weight, s->limit)) {
             *node = at;
@@ -156,8 +162,13 @@ static bool next_weight(const Weights* w, const Source* s, Place* place, uint* e
 static void find_weights(Weights* w, Source* s, float samples) {
     w->sum = (float_n)(0.0f);
     if (s->refines) {
-        for (uint slot = 0u; slot < s->cut_size; ++slot)
-            w->sum += weigh(s, s->cut[slot], seen_of(s, slot)).weight;
+        for (uint slot = 0u; slot < s->cut_size; ++slot) {
+            const Weighed own = weigh(s, s->cut[slot], seen_of(s, slot));
+            w->sum += own.weight;
+#if LANES > 1
+            s->cut_weights[slot] = own;
+#endif
+        }
         s->limit = w->sum * (REFINED_SHARE / samples);
     }
     w->sum = w->largest_point = (float_n)(0.0f);
@@ -297,7 +308,7 @@ KERNEL void adaptive_draw(Tiles tiles, Camera camera, Pass pass, Budget budget,
         uint drawing = lanes_n(times > 0.0f);
         if (!drawing) continue;
         const float_n control =
-            CONTROL * vload_n(0, source.visible + 16u * DRAWN_SLOT(entry)) / share;
+            CONTROL * FLOATS_AT(source.visible + 16u * DRAWN_SLOT(entry)) / share;
         for (; drawing; drawing &= drawing - 1u) {
             const uint lane = lowest(drawing);
             const uint number = UINT_LANE(counts, lane);

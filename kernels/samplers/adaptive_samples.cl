@@ -76,17 +76,17 @@ KERNEL void adaptive_aim(Tiles tiles, Camera camera, Pass pass, __global const S
                          LANE(receivers.from.z, lane), 0.0f);
         }
     const float_n pixels = as_float_n(receivers.y * tiles.width + receivers.x);
-    const float_n first_packets = as_float_n(vload_n(0, own_packets));
+    const float_n first_packets = FLOATS_AT(own_packets);
     float_n drawn_red = (float_n)(0.0f), drawn_green = drawn_red, drawn_blue = drawn_red;
     for (uint begin = 0u; begin < size; begin += LANES) {
         const int_n used = lane_numbers() < (int)(size - begin);
         __global const uint* rows = draws + DRAW_ROW(pass, group, begin, 0u) + begin % 16u;
         const uint_n none = (uint_n)(0u);
         const uint_n node =
-            select(none, DRAWN_NODE(vload_n(0, rows + 16u * DRAW_ENTRY)), as_uint_n(used));
-        const uint_n bits = vload_n(0, rows + 16u * DRAW_LANE);
-        const float_n share = as_float_n(vload_n(0, rows + 16u * DRAW_SHARE));
-        const float_n control = as_float_n(vload_n(0, rows + 16u * DRAW_CONTROL));
+            select(none, DRAWN_NODE(UINTS_AT(rows + 16u * DRAW_ENTRY)), as_uint_n(used));
+        const uint_n bits = UINTS_AT(rows + 16u * DRAW_LANE);
+        const float_n share = FLOATS_AT(rows + 16u * DRAW_SHARE);
+        const float_n control = FLOATS_AT(rows + 16u * DRAW_CONTROL);
         const uint_n cell = bits & 15u, number = bits >> 4u & 0x1ffu;
         const float_n stratum = convert_float_n(bits >> 13u & 0x1ffu);
         const Points_n points = permute_points(&receivers.points, cell);
@@ -150,13 +150,13 @@ KERNEL void adaptive_add(Pass pass, __global const uint* pixel_packets, __global
     uint count = 0u;
     for (uint packet = first; packet < end; ++packet)
         for (uint i = 0u; i < 16u; i += LANES) {
-            const float_n ends = vload_n(0, rays + 64 * (ulong)packet + 48u + i);
+            const float_n ends = FLOATS_AT(rays + 64 * (ulong)packet + 48u + i);
             __global const float* own = values + 48 * (ulong)packet + i;
             const int_n visible = ends > 0.0f;
             count += popcount(lanes_n((ends != 0.0f) & (ends != DARK)));
-            red += select((float_n)(0.0f), vload_n(0, own), visible);
-            green += select((float_n)(0.0f), vload_n(0, own + 16), visible);
-            blue += select((float_n)(0.0f), vload_n(0, own + 32), visible);
+            red += select((float_n)(0.0f), FLOATS_AT(own), visible);
+            green += select((float_n)(0.0f), FLOATS_AT(own + 16), visible);
+            blue += select((float_n)(0.0f), FLOATS_AT(own + 32), visible);
         }
     __global const float* own_base = base + 3u * LANES * group + lane;
     const float3 sum = (float3)(own_base[0] + sum_of(red), own_base[LANES] + sum_of(green),
