@@ -4,20 +4,19 @@
 #include "lib/rays.h"
 
 // triangles[16 * packet + lane], ~0 where nothing is hit; where something is, the ray's end becomes
-// the hit's t. LANES rays of a packet per work-item.
+// the hit's t. One packet per work-item.
 #if LANES > 1
 KERNEL void bench_closest_packets(BVH_PARAMETERS, __global const float4* origins,
                                   __global float* rays, uint packet_count,
                                   __global int* triangles) {
     const uint i = get_global_id(0);
-    const uint first = LANES * i;
-    if (first / 16u >= packet_count) return;
-    __global float* row = rays + 64 * (ulong)(first / 16u) + first % 16u;
-    Packet packet = load_packet(origins, row, first / 16u);
-    int_n found;
-    closest_hits(BVH_ARGUMENTS, &packet, &found);
-    *(__global int_n*)(triangles + first) = found;
-    *(__global float_n*)(row + 48) = packet.end;
+    if (i >= packet_count) return;
+    Packet packet = load_packet(origins, rays, i);
+    int_n found[PARTS];
+    closest_hits(BVH_ARGUMENTS, &packet, found);
+    for (uint part = 0u; part < PARTS; ++part)
+        *(__global int_n*)(triangles + 16u * i + LANES * part) = found[part];
+    store_ends(&packet, rays, i);
 }
 #endif
 

@@ -13,17 +13,14 @@
 #endif
 
 #if LANES > 1
-// LANES rays of a packet per work-item.
+// One packet per work-item.
 KERNEL void shadows_trace_packets(BVH_PARAMETERS, __global const float4* origins,
                                   __global float* rays, REGIONS uint packet_count) {
-    const uint first = LANES * (uint)get_global_id(0);
-    if (first / 16u >= packet_count) return;
-    if (IS_UNUSED(first / 16u)) return;
-    __global float* row = rays + 64 * (ulong)(first / 16u) + first % 16u;
-    __global float_n* end = (__global float_n*)(row + 48);
-    if (!lanes_n(*end > 0.0f)) return;
-    Packet packet = load_packet(origins, row, first / 16u);
-    if (occlude_packet(BVH_ARGUMENTS, &packet)) *end = packet.end;
+    const uint i = get_global_id(0);
+    if (i >= packet_count) return;
+    if (IS_UNUSED(i)) return;
+    Packet packet = load_packet(origins, rays, i);
+    if (rays_of(&packet) && occlude_packet(BVH_ARGUMENTS, &packet)) store_ends(&packet, rays, i);
 }
 #endif
 

@@ -104,8 +104,8 @@ std::vector<Tracing> DeviceTracer::tracings(bool any_hit) const {
         Tracing tracing;
         tracing.name = packets ? "packets" : "single rays";
         tracing.prepare = [shared = shared_](const RaySet& set) { shared->prepare(set); };
-        tracing.run = [shared = shared_, traced, packets, lanes]() mutable {
-            traced.launch(shared->packets * (16 / (packets ? lanes : 1)), shared->arguments);
+        tracing.run = [shared = shared_, traced, packets]() mutable {
+            traced.launch(shared->packets * (packets ? 1 : 16), shared->arguments);
             shared->device.finish();
         };
         tracing.collect = [shared = shared_, any_hit] { return shared->collect(any_hit); };

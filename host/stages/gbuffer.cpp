@@ -13,7 +13,7 @@ GBufferStage::GBufferStage(Device& device, const DeviceScene& scene)
       trace_(device.kernel("gbuffer.cl",
                            scene.primary_packets ? "gbuffer_trace_packets" : "gbuffer_trace_rays",
                            scene.surfaces, "gbuffer")),
-      rays_per_item_(scene.primary_packets ? device.form().lanes : 1) {}
+      rays_per_item_(scene.primary_packets ? 16 : 1) {}
 
 void GBufferStage::trace(const Tiles& tiles, const PixelSample& sample, Buffer<Surface>& surfaces,
                          std::size_t first_point) {

@@ -17,7 +17,7 @@ ShadowStage::ShadowStage(Device& device, const DeviceScene& scene, std::size_t p
       trace_(device.kernel("shadows.cl",
                            scene.packets ? "shadows_trace_packets" : "shadows_trace_rays",
                            with_regions(scene.traversal, regions), "shadows")),
-      rays_per_item_(device.form().lanes),
+      rays_per_item_(scene.packets ? 16 : 1),
       origins_(device.allocate<float4>(packets)),
       rays_(device.allocate<float>(64 * packets)) {}
 

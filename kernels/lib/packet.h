@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// LANES rays with one origin against the wide BVH of lib/bvh.h, by one work-item. Sets of rays are
-// integers, 1 << lane.
+// 16 rays with one origin against the wide BVH of lib/bvh.h, by one work-item: in vectors of LANES
+// rays, the packet's parts. Sets of rays are integers, 1 << ray.
 #ifndef MANYLIGHT_LIB_PACKET_H
 #define MANYLIGHT_LIB_PACKET_H
 
@@ -8,20 +8,25 @@
 
 #if LANES > 1
 
+#define PARTS (16 / LANES)
+
 // So many rays, or fewer, are tested one by one against all of a node's children at once, instead
 // of all at once against one child after another.
-#define PACKET_FEW (LANES / 2)
+#ifndef PACKET_FEW
+#define PACKET_FEW 8
+#endif
 
-// Segments origin + t direction, 0 < t < end; a lane whose end is not positive holds no ray.
+// Segments origin + t direction, 0 < t < end; a ray whose end is not positive does not exist.
 typedef struct Packet {
     float3 origin;
-    float_n x, y, z;                 // directions
-    float_n size;                    // their largest parts
-    float_n ix, iy, iz, bx, by, bz;  // slabs: planes at q are crossed at q * i + b
-    int_n near_x, near_y, near_z;    // as in Prepared
-    float_n end;
-    float3 lowest, highest;  // bounds of the inverses (ix, iy, iz) over all rays
-    float furthest;          // the last end
+    float_n x[PARTS], y[PARTS], z[PARTS];  // directions
+    float_n end[PARTS];
+    float_n size[PARTS];                      // the directions' largest parts
+    float_n ix[PARTS], iy[PARTS], iz[PARTS];  // slabs: planes at q are crossed at q * i + b
+    float_n bx[PARTS], by[PARTS], bz[PARTS];
+    int_n near_x[PARTS], near_y[PARTS], near_z[PARTS];  // as in Prepared
+    float3 lowest, highest;                             // bounds of the inverses (ix, iy, iz)
+    float furthest;                                     // the last end
 } Packet;
 
 static float_n safe_inverse_n(float_n d) {
@@ -30,32 +35,51 @@ static float_n safe_inverse_n(float_n d) {
 
 static float highest_of(float_n v) { return -lowest_of(-v); }
 
-static Packet make_packet(float3 origin, float_n x, float_n y, float_n z, float_n end) {
-    Packet p;
-    p.origin = origin;
-    p.x = x;
-    p.y = y;
-    p.z = z;
-    p.end = end;
-    p.ix = safe_inverse_n(x);
-    p.iy = safe_inverse_n(y);
-    p.iz = safe_inverse_n(z);
-    p.bx = -origin.x * p.ix;
-    p.by = -origin.y * p.iy;
-    p.bz = -origin.z * p.iz;
-    p.near_x = select((int_n)(0), (int_n)(3), p.ix < 0.0f);
-    p.near_y = select((int_n)(1), (int_n)(4), p.iy < 0.0f);
-    p.near_z = select((int_n)(2), (int_n)(5), p.iz < 0.0f);
-    p.size = max(max(fabs(x), fabs(y)), fabs(z));
-    const int_n none = !(end > 0.0f);
-    const float_n far = (float_n)(INFINITY);
-    p.lowest = (float3)(lowest_of(select(p.ix, far, none)), lowest_of(select(p.iy, far, none)),
-                        lowest_of(select(p.iz, far, none)));
-    p.highest = (float3)(highest_of(select(p.ix, -far, none)), highest_of(select(p.iy, -far, none)),
-                         highest_of(select(p.iz, -far, none)));
-    p.furthest = highest_of(end);
-    return p;
+static float last_end(const Packet* p) {
+    float_n last = p->end[0];
+    for (uint i = 1u; i < PARTS; ++i) last = max(last, p->end[i]);
+    return highest_of(last);
 }
+
+// Completes a packet that has an origin, directions and ends.
+static void prepare_packet(Packet* p) {
+    const float_n far = (float_n)(INFINITY);
+    float_n low_x = far, low_y = far, low_z = far, high_x = -far, high_y = -far, high_z = -far;
+    for (uint i = 0u; i < PARTS; ++i) {
+        const float_n ix = safe_inverse_n(p->x[i]), iy = safe_inverse_n(p->y[i]),
+                      iz = safe_inverse_n(p->z[i]);
+        p->ix[i] = ix;
+        p->iy[i] = iy;
+        p->iz[i] = iz;
+        p->bx[i] = -p->origin.x * ix;
+        p->by[i] = -p->origin.y * iy;
+        p->bz[i] = -p->origin.z * iz;
+        p->near_x[i] = select((int_n)(0), (int_n)(3), ix < 0.0f);
+        p->near_y[i] = select((int_n)(1), (int_n)(4), iy < 0.0f);
+        p->near_z[i] = select((int_n)(2), (int_n)(5), iz < 0.0f);
+        p->size[i] = max(max(fabs(p->x[i]), fabs(p->y[i])), fabs(p->z[i]));
+        const int_n none = !(p->end[i] > 0.0f);
+        low_x = min(low_x, select(ix, far, none));
+        low_y = min(low_y, select(iy, far, none));
+        low_z = min(low_z, select(iz, far, none));
+        high_x = max(high_x, select(ix, -far, none));
+        high_y = max(high_y, select(iy, -far, none));
+        high_z = max(high_z, select(iz, -far, none));
+    }
+    p->lowest = (float3)(lowest_of(low_x), lowest_of(low_y), lowest_of(low_z));
+    p->highest = (float3)(highest_of(high_x), highest_of(high_y), highest_of(high_z));
+    p->furthest = last_end(p);
+}
+
+// The rays that exist.
+static uint rays_of(const Packet* p) {
+    uint rays = 0u;
+    for (uint i = 0u; i < PARTS; ++i) rays |= lanes_n(p->end[i] > 0.0f) << (LANES * i);
+    return rays;
+}
+
+// Those of a set in one part.
+#define PART_OF(rays, part) ((rays) >> (LANES * (part)) & ALL_LANES)
 
 static float3 direction_of(const Packet* p, uint lane) {
     return (float3)(LANE(p->x, lane), LANE(p->y, lane), LANE(p->z, lane));
@@ -97,30 +121,35 @@ static uint may_enter_children(__global const float_w* node, const Packet* p, fl
     return lanes_w((*entry <= leave) & (node[0] <= node[3]));  // which empty lanes are not
 }
 
-// The rays that enter one child.
-static uint enter_child(__global const float* lane, const Packet* p) {
-    const float_n lx = (float_n)(lane[0]), hx = (float_n)(lane[3 * BVH_WIDTH]);
-    const float_n ly = (float_n)(lane[BVH_WIDTH]), hy = (float_n)(lane[4 * BVH_WIDTH]);
-    const float_n lz = (float_n)(lane[2 * BVH_WIDTH]), hz = (float_n)(lane[5 * BVH_WIDTH]);
-    const float_n x0 = fma(lx, p->ix, p->bx), x1 = fma(hx, p->ix, p->bx);
-    const float_n y0 = fma(ly, p->iy, p->by), y1 = fma(hy, p->iy, p->by);
-    const float_n z0 = fma(lz, p->iz, p->bz), z1 = fma(hz, p->iz, p->bz);
-    const float_n entry = max(max(min(x0, x1), min(y0, y1)), max(min(z0, z1), (float_n)(0.0f)));
-    const float_n leave = min(min(max(x0, x1), max(y0, y1)), min(max(z0, z1), p->end));
-    return lanes_n(entry <= leave);
+// The rays of a set that enter one child.
+static uint enter_child(__global const float* lane, const Packet* p, uint rays) {
+    uint entered = 0u;
+    for (uint i = 0u; i < PARTS; ++i) {
+        if (PARTS > 1 && !PART_OF(rays, i)) continue;
+        const float_n x0 = fma((float_n)(lane[0]), p->ix[i], p->bx[i]);
+        const float_n x1 = fma((float_n)(lane[3 * BVH_WIDTH]), p->ix[i], p->bx[i]);
+        const float_n y0 = fma((float_n)(lane[BVH_WIDTH]), p->iy[i], p->by[i]);
+        const float_n y1 = fma((float_n)(lane[4 * BVH_WIDTH]), p->iy[i], p->by[i]);
+        const float_n z0 = fma((float_n)(lane[2 * BVH_WIDTH]), p->iz[i], p->bz[i]);
+        const float_n z1 = fma((float_n)(lane[5 * BVH_WIDTH]), p->iz[i], p->bz[i]);
+        const float_n entry = max(max(min(x0, x1), min(y0, y1)), max(min(z0, z1), (float_n)(0.0f)));
+        const float_n leave = min(min(max(x0, x1), max(y0, y1)), min(max(z0, z1), p->end[i]));
+        entered |= lanes_n(entry <= leave) << (LANES * i);
+    }
+    return entered & rays;
 }
 
-// A triangle of a block as all rays meet it.
+// A triangle of a block as the rays of a part meet it.
 typedef struct TriangleHits {
     float_n t, n;  // t and what it is to be divided by
     int_n hit;
 } TriangleHits;
 
-// hit_block() the other way round: all rays against triangle `lane` of a block.
-static TriangleHits hit_triangle(const PreparedBlock* b, uint lane, const Packet* p) {
-#define DOT(v) \
-    fma(p->x, LANE((v)[0], lane), fma(p->y, LANE((v)[1], lane), p->z* LANE((v)[2], lane)))
-#define WITH_MARGIN(margin, v) fma(p->size, LANE(margin, lane), as_float_n(as_int_n(DOT(v)) ^ sign))
+// hit_block() the other way round: a part's rays against triangle `lane` of a block.
+static TriangleHits hit_triangle(const PreparedBlock* b, uint lane, const Packet* p, uint part) {
+    const float_n x = p->x[part], y = p->y[part], z = p->z[part], size = p->size[part];
+#define DOT(v) fma(x, LANE((v)[0], lane), fma(y, LANE((v)[1], lane), z* LANE((v)[2], lane)))
+#define WITH_MARGIN(margin, v) fma(size, LANE(margin, lane), as_float_n(as_int_n(DOT(v)) ^ sign))
     TriangleHits hits;
     const float_n n = DOT(b->n);
     const int_n sign = as_int_n(n) & (int)0x80000000;
@@ -128,8 +157,8 @@ static TriangleHits hit_triangle(const PreparedBlock* b, uint lane, const Packet
                                WITH_MARGIN(b->margin_w, b->s));
     hits.n = fabs(n);
     hits.t = as_float_n(as_int(LANE(b->t, lane)) ^ sign);
-    hits.hit = (inside >= 0.0f) & (hits.n > LANE(b->least_n, lane) * p->size) & (hits.t > 0.0f) &
-               (hits.t < p->end * hits.n);
+    hits.hit = (inside >= 0.0f) & (hits.n > LANE(b->least_n, lane) * size) & (hits.t > 0.0f) &
+               (hits.t < p->end[part] * hits.n);
     return hits;
 #undef WITH_MARGIN
 #undef DOT
@@ -137,8 +166,8 @@ static TriangleHits hit_triangle(const PreparedBlock* b, uint lane, const Packet
 
 // The children that rays of a set enter: `sets` gets which rays, `entry` where the first does, at
 // the earliest.
-static uint enter_children_n(__global const float_w* node, const Packet* p, uint rays, int_w* sets,
-                             float_w* entry) {
+static uint enter_children_of(__global const float_w* node, const Packet* p, uint rays, int_w* sets,
+                              float_w* entry) {
     uint entered = 0u;
     if (popcount(rays) <= PACKET_FEW) {
         *entry = (float_w)(INFINITY);
@@ -155,7 +184,7 @@ static uint enter_children_n(__global const float_w* node, const Packet* p, uint
     } else {
         for (uint lanes = may_enter_children(node, p, entry); lanes; lanes &= lanes - 1u) {
             const uint lane = lowest(lanes);
-            const uint hit = enter_child((__global const float*)node + lane, p) & rays;
+            const uint hit = enter_child((__global const float*)node + lane, p, rays);
             INT_LANE(*sets, lane) = (int)hit;
             entered |= (uint)(hit != 0u) << lane;
         }
@@ -170,13 +199,14 @@ static bool is_there_for(const Packet* p, uint ray, const PreparedBlock* b, uint
     return is_block_there(b, lane, p->origin, direction_of(p, ray), triangle, seen ALPHA_ARGUMENTS);
 }
 
-// Of the rays that hit it, those that it is there for.
-static int_n there_for_all(const Packet* p, int_n hit, const PreparedBlock* b, uint lane,
+// Of a part's rays that hit it, those that it is there for.
+static int_n there_for_all(const Packet* p, uint part, int_n hit, const PreparedBlock* b, uint lane,
                            uint triangle, uint seen ALPHA_PARAMETERS) {
     if (alpha_of[triangle] == NO_ALPHA) return hit;
     for (uint rays = lanes_n(hit); rays; rays &= rays - 1u) {
         const uint ray = lowest(rays);
-        if (!is_there_for(p, ray, b, lane, triangle, seen ALPHA_ARGUMENTS)) INT_LANE(hit, ray) = 0;
+        if (!is_there_for(p, LANES * part + ray, b, lane, triangle, seen ALPHA_ARGUMENTS))
+            INT_LANE(hit, ray) = 0;
     }
     return hit;
 }
@@ -186,13 +216,21 @@ static int_n there_for_all(const Packet* p, int_n hit, const PreparedBlock* b, u
 // The packet in the frame of an instance.
 static Packet packet_in_instance(const Packet* p, __global const Instance* in) {
     const float4 a = in->to_object[0], b = in->to_object[1], c = in->to_object[2];
-    return make_packet(point_to_object(in, p->origin), fma(a.x, p->x, fma(a.y, p->y, a.z * p->z)),
-                       fma(b.x, p->x, fma(b.y, p->y, b.z * p->z)),
-                       fma(c.x, p->x, fma(c.y, p->y, c.z * p->z)), p->end);
+    Packet inside;
+    inside.origin = point_to_object(in, p->origin);
+    for (uint i = 0u; i < PARTS; ++i) {
+        const float_n x = p->x[i], y = p->y[i], z = p->z[i];
+        inside.x[i] = fma(a.x, x, fma(a.y, y, a.z * z));
+        inside.y[i] = fma(b.x, x, fma(b.y, y, b.z * z));
+        inside.z[i] = fma(c.x, x, fma(c.y, y, c.z * z));
+        inside.end[i] = p->end[i];
+    }
+    prepare_packet(&inside);
+    return inside;
 }
 
 static void leave_instance(const Packet* inside, Packet* world) {
-    world->end = inside->end;
+    for (uint i = 0u; i < PARTS; ++i) world->end[i] = inside->end[i];
     world->furthest = inside->furthest;
 }
 #endif
@@ -202,7 +240,7 @@ static bool occlude_packet(BVH_PARAMETERS, Packet* p) {
     int stack[BVH_STACK];
     uint masks[BVH_STACK];
     int top = 0;
-    uint live = lanes_n(p->end > 0.0f);
+    uint live = rays_of(p);
     const uint all = live;
     stack[top] = 0;
     masks[top++] = live;
@@ -244,7 +282,7 @@ static bool occlude_packet(BVH_PARAMETERS, Packet* p) {
             __global const uint* names = (__global const uint*)(rows + 9);
 #endif
             const uint triangles = (uint)(~entry & 15) + 1u;
-            if (popcount(mask) < triangles) {
+            if (popcount(mask) < PARTS * triangles) {
                 for (uint rays = mask; rays; rays &= rays - 1u) {
                     const uint lane = lowest(rays);
                     uint found = lanes_k(hit_block(&block, direction_of(p, lane),
@@ -263,18 +301,19 @@ static bool occlude_packet(BVH_PARAMETERS, Packet* p) {
                     SET_LANE(p->end, lane, -1.0f);
                 }
             } else {
-                for (uint triangle = 0u; triangle < triangles; ++triangle) {
-                    int_n hit = hit_triangle(&block, triangle, p).hit;
+                for (uint triangle = 0u; triangle < triangles && (mask & live); ++triangle)
+                    for (uint part = 0u; part < PARTS; ++part) {
+                        if (PARTS > 1 && !PART_OF(mask & live, part)) continue;
+                        int_n hit = hit_triangle(&block, triangle, p, part).hit;
 #if HAS_ALPHA
-                    hit = there_for_all(p, hit, &block, triangle, names[triangle],
-                                        names[triangle] + renumber ALPHA_ARGUMENTS);
+                        hit = there_for_all(p, part, hit, &block, triangle, names[triangle],
+                                            names[triangle] + renumber ALPHA_ARGUMENTS);
 #endif
-                    const uint rays = lanes_n(hit);
-                    if (!rays) continue;
-                    live &= ~rays;
-                    p->end = select(p->end, (float_n)(-1.0f), hit);
-                    if (!(mask & live)) break;
-                }
+                        const uint rays = lanes_n(hit);
+                        if (!rays) continue;
+                        live &= ~(rays << (LANES * part));
+                        p->end[part] = select(p->end[part], (float_n)(-1.0f), hit);
+                    }
             }
             if (!live) break;
             continue;
@@ -283,7 +322,7 @@ static bool occlude_packet(BVH_PARAMETERS, Packet* p) {
         __global const int* children = (__global const int*)(node + 6);
         int_w sets;
         float_w near;
-        for (uint lanes = enter_children_n(node, p, mask, &sets, &near); lanes;
+        for (uint lanes = enter_children_of(node, p, mask, &sets, &near); lanes;
              lanes &= lanes - 1u) {
             const uint lane = lowest(lanes);
             stack[top] = children[lane];
@@ -302,10 +341,10 @@ static void closest_hits(BVH_PARAMETERS, Packet* p, int_n* triangles) {
     float distance[BVH_STACK];
     uint masks[BVH_STACK];
     int top = 0;
-    *triangles = (int_n)(~0);
+    for (uint i = 0u; i < PARTS; ++i) triangles[i] = (int_n)(~0);
     stack[top] = 0;
     distance[top] = 0.0f;
-    masks[top++] = lanes_n(p->end > 0.0f);
+    masks[top++] = rays_of(p);
 #if HAS_INSTANCES
     Packet inside;  // as in occlude_packet()
     Packet* const world = p;
@@ -343,7 +382,7 @@ static void closest_hits(BVH_PARAMETERS, Packet* p, int_n* triangles) {
             const PreparedBlock block = prepare_block(rows, p->origin);
             bool any_hit = false;
             const uint all = (uint)(~entry & 15) + 1u;
-            if (popcount(mask) < all) {
+            if (popcount(mask) < PARTS * all) {
                 for (uint rays = mask; rays; rays &= rays - 1u) {
                     const uint lane = lowest(rays);
                     const BlockHits hits = hit_block(&block, direction_of(p, lane),
@@ -360,31 +399,35 @@ static void closest_hits(BVH_PARAMETERS, Packet* p, int_n* triangles) {
                             continue;
 #endif
                         SET_LANE(p->end, lane, LANE(t, triangle));
-                        INT_LANE(*triangles, lane) = names[triangle] + renumber;
+                        ((int*)triangles)[lane] = names[triangle] + renumber;
                         any_hit = true;
                     }
                 }
             } else {
-                for (uint triangle = 0u; triangle < all; ++triangle) {
-                    TriangleHits hits = hit_triangle(&block, triangle, p);
+                for (uint triangle = 0u; triangle < all; ++triangle)
+                    for (uint part = 0u; part < PARTS; ++part) {
+                        if (PARTS > 1 && !PART_OF(mask, part)) continue;
+                        TriangleHits hits = hit_triangle(&block, triangle, p, part);
 #if HAS_ALPHA
-                    hits.hit = there_for_all(p, hits.hit, &block, triangle, (uint)names[triangle],
-                                             (uint)(names[triangle] + renumber) ALPHA_ARGUMENTS);
+                        hits.hit = there_for_all(
+                            p, part, hits.hit, &block, triangle, (uint)names[triangle],
+                            (uint)(names[triangle] + renumber) ALPHA_ARGUMENTS);
 #endif
-                    if (!lanes_n(hits.hit)) continue;
-                    p->end = select(p->end, hits.t / hits.n, hits.hit);
-                    *triangles = select(*triangles, (int_n)(names[triangle] + renumber), hits.hit);
-                    any_hit = true;
-                }
+                        if (!lanes_n(hits.hit)) continue;
+                        p->end[part] = select(p->end[part], hits.t / hits.n, hits.hit);
+                        triangles[part] =
+                            select(triangles[part], (int_n)(names[triangle] + renumber), hits.hit);
+                        any_hit = true;
+                    }
             }
-            if (any_hit) p->furthest = highest_of(p->end);
+            if (any_hit) p->furthest = last_end(p);
             continue;
         }
         __global const float_w* node = bvh_nodes + entry * 7;
         __global const int* children = (__global const int*)(node + 6);
         int_w sets;
         float_w enter;
-        uint lanes = enter_children_n(node, p, mask, &sets, &enter);
+        uint lanes = enter_children_of(node, p, mask, &sets, &enter);
         float nearest = INFINITY;
         for (; lanes; lanes &= lanes - 1u) {  // the nearest child ends on top of the stack
             const uint lane = lowest(lanes);

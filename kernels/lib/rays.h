@@ -16,11 +16,23 @@ static void clear_packet(__global float* rays, ulong packet) {
 }
 
 #if LANES > 1
-// LANES rays of a packet, of which `row` points to the first's direction's x.
-static Packet load_packet(__global const float4* origins, __global const float* row, uint packet) {
-    __global const float_n* lanes = (__global const float_n*)row;
-    return make_packet(origins[packet].xyz, lanes[0], lanes[16 / LANES], lanes[32 / LANES],
-                       lanes[48 / LANES]);
+static Packet load_packet(__global const float4* origins, __global const float* rays, uint packet) {
+    __global const float_n* rows = (__global const float_n*)(rays + 64 * (ulong)packet);
+    Packet p;
+    p.origin = origins[packet].xyz;
+    for (uint i = 0u; i < PARTS; ++i) {
+        p.x[i] = rows[i];
+        p.y[i] = rows[PARTS + i];
+        p.z[i] = rows[2 * PARTS + i];
+        p.end[i] = rows[3 * PARTS + i];
+    }
+    prepare_packet(&p);
+    return p;
+}
+
+static void store_ends(const Packet* p, __global float* rays, uint packet) {
+    for (uint i = 0u; i < PARTS; ++i)
+        *(__global float_n*)(&RAY_END(rays, packet, LANES * i)) = p->end[i];
 }
 #endif
 
