@@ -38,7 +38,7 @@ typedef struct CellTrials {
     float_n traced, passed;
 } CellTrials;
 
-static CellTrials load_trials(uint_n counts) {
+INLINE CellTrials load_trials(uint_n counts) {
     CellTrials t;
     t.traced = convert_float_n(counts & 0xffffu);
     t.passed = convert_float_n(counts >> 16);
@@ -47,7 +47,7 @@ static CellTrials load_trials(uint_n counts) {
 
 // The rays of a slot in the quadrants' cells from `cell` on, in the 4 x 4 of them that each is one
 // of, and in the whole quadrant. `counts`: of the quadrant's 16 cells.
-static CellTrials of_cells(__global const uint* counts, uint cell) {
+INLINE CellTrials of_cells(__global const uint* counts, uint cell) {
     return load_trials(UINTS_AT(counts + cell));
 }
 
@@ -62,7 +62,7 @@ static CellTrials of_cells(__global const uint* counts, uint cell) {
 #define SWAP_2(v) (v).s2301
 #endif
 
-static CellTrials of_quarters(__global const uint* counts, uint cell) {
+INLINE CellTrials of_quarters(__global const uint* counts, uint cell) {
 #if LANES > 1
     CellTrials t = of_cells(counts, cell);
     t.traced += SWAP_1(t.traced);
@@ -177,7 +177,7 @@ static void add_trials(Trials* sum, Trials term) {
     sum->passed += term.passed;
 }
 
-static float_n shrink_n(float_n traced, float_n passed, float_n towards) {
+INLINE float_n shrink_n(float_n traced, float_n passed, float_n towards) {
     return (passed + PARENT_RAYS * towards) * inverse_n(traced + PARENT_RAYS);
 }
 
@@ -186,7 +186,7 @@ typedef struct Outcome {
     float_n traced, passed, expected;
 } Outcome;
 
-static void add_outcome(Outcome* sum, float_n traced, float_n passed, float_n share) {
+INLINE void add_outcome(Outcome* sum, float_n traced, float_n passed, float_n share) {
     sum->traced += traced;
     sum->passed += passed;
     sum->expected = fma(traced, share, sum->expected);
@@ -202,7 +202,7 @@ typedef struct Odds {
     float_n passed, stopped;
 } Odds;
 
-static Odds odds_of(const Outcome* seen) {
+INLINE Odds odds_of(const Outcome* seen) {
     Odds odds;
     odds.passed = (seen->passed + SIGHT_RAYS) / (seen->expected + SIGHT_RAYS);
     odds.stopped =
@@ -210,7 +210,7 @@ static Odds odds_of(const Outcome* seen) {
     return odds;
 }
 
-static float_n adjust(Odds odds, float_n share) {
+INLINE float_n adjust(Odds odds, float_n share) {
     const float_n yes = share * odds.passed;
     return yes * inverse_n(fma(1.0f - share, odds.stopped, yes));
 }

@@ -9,7 +9,7 @@ namespace {
 
 std::string describe(const DeviceForm& form) {
     if (form.lanes == 1) return "GPUs: a ray or a pixel per work-item";
-    return fmt::format("{} lanes: so many rays or pixels per work-item, in vectors", form.lanes);
+    return fmt::format("{} lanes: 16 rays or pixels per work-item, in vectors", form.lanes);
 }
 
 }  // namespace

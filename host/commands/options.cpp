@@ -118,8 +118,8 @@ void add_view(CLI::App& command, SceneArguments& scene, unsigned height = 512) {
     command
         .add_option(
             "--device-form", scene.lanes,
-            "how kernels are laid out: auto (as suits the device), 4, 8 or 16 lanes, or gpu "
-            "(what GPUs run, on any device)")
+            "how kernels are laid out: auto (as suits the device), in vectors of 4, 8 or 16 "
+            "lanes, or gpu (what GPUs run, on any device)")
         ->transform(CLI::CheckedTransformer(device_forms).description(""));
     command.add_option("--threads", scene.threads, "processors that a CPU device may use")
         ->check(whole(1, 4096));

@@ -32,7 +32,8 @@ struct DeviceInfo {
 
 /// How kernels are laid out: the vectors that suit a device's registers, or, for GPUs, none.
 struct DeviceForm {
-    unsigned lanes;       // rays or pixels of a work-item, in vectors: 16, 8, 4; 1: GPUs
+    unsigned lanes;   // of a register, 16, 8, 4: rays go by 16 in vectors of these; 1: one by one
+    unsigned pixels;  // that sampler adaptive draws together: 16, or 1
     unsigned bvh_width;   // children of a BVH node, and triangles of a block
     unsigned local_size;  // work-items of a group
 };

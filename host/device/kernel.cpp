@@ -19,8 +19,8 @@ std::string build_options(const Defines& defines, const DeviceForm& form, bool r
     // -w: a warning of whatever compiler a driver brings concerns no user. -cl-kernel-arg-info:
     // arguments are set by name.
     std::string options = refuses_warnings ? "-cl-std=CL1.2 -Werror" : "-cl-std=CL1.2 -w";
-    options +=
-        fmt::format(" -cl-kernel-arg-info -DLOCAL_SIZE={} -DLANES={}", form.local_size, form.lanes);
+    options += fmt::format(" -cl-kernel-arg-info -DLOCAL_SIZE={}", form.local_size);
+    if (!defines.contains("LANES")) options += fmt::format(" -DLANES={}", form.lanes);
     if (form.lanes == 1) options += " -DPORTABLE_LANES=1";  // nothing of the processor's own
     for (const auto& [name, value] : defines) options += fmt::format(" -D{}={}", name, value);
     return options;

@@ -104,7 +104,7 @@ std::size_t default_device(const std::vector<DeviceInfo>& devices) {
 }  // namespace
 
 DeviceForm form_of(unsigned lanes) {
-    return lanes == 1 ? DeviceForm{1, 4, 64} : DeviceForm{lanes, lanes, 16};
+    return lanes == 1 ? DeviceForm{1, 1, 4, 64} : DeviceForm{lanes, 16, lanes, 16};
 }
 
 DeviceForm form_for(const DeviceInfo& device) {

@@ -8,7 +8,7 @@ namespace manylight {
 AdaptiveStage::AdaptiveStage(Device& device, const DeviceScene& scene, std::size_t packets,
                              std::size_t pixels)
     : scene_(scene.arguments),
-      lanes_(device.form().lanes),
+      lanes_(device.form().pixels),
       shadows_(device, scene, packets, true),
       draws_(device.allocate<uint>(64 * packets)),
       draw_counts_(device.allocate<uint>((packets + lanes_ - 1) / lanes_)),
@@ -17,12 +17,11 @@ AdaptiveStage::AdaptiveStage(Device& device, const DeviceScene& scene, std::size
       base_(device.allocate<float>(3 * packets)),
       values_(device.allocate<float>(48 * packets)),
       expectations_(device.allocate<Expectation>(pixels)) {
-    draw_ = device.kernel("samplers/adaptive.cl", "adaptive_draw", scene.shading, "weights");
-    const auto kernel = [&](const char* name) {
-        return device.kernel("samplers/adaptive_samples.cl", name, scene.shading, "samples");
-    };
-    aim_ = kernel("adaptive_aim");
-    add_ = kernel("adaptive_add");
+    Defines defines = scene.shading;
+    defines["LANES"] = static_cast<int>(lanes_);
+    draw_ = device.kernel("samplers/adaptive.cl", "adaptive_draw", defines, "weights");
+    aim_ = device.kernel("samplers/adaptive_samples.cl", "adaptive_aim", defines, "samples");
+    add_ = device.kernel("samplers/adaptive_samples.cl", "adaptive_add", defines, "samples");
 }
 
 Arguments AdaptiveStage::draws() const {

@@ -18,9 +18,11 @@ Arguments Visibility::arguments() const {
 }
 
 VisibilityStage::VisibilityStage(Device& device, const DeviceScene& scene)
-    : scene_(scene.arguments), lanes_(device.form().lanes) {
+    : scene_(scene.arguments), lanes_(device.form().pixels) {
+    Defines defines = scene.traversal;
+    defines["LANES"] = static_cast<int>(lanes_);
     const auto kernel = [&](const char* name) {
-        return device.kernel("visibility.cl", name, scene.traversal, "visibility");
+        return device.kernel("visibility.cl", name, defines, "visibility");
     };
     learn_ = kernel("visibility_learn");
     sum_ = kernel("visibility_sum");

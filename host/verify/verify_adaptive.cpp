@@ -39,7 +39,7 @@ struct Run {
 
     Run(Device& device, const DeviceScene& scene, Tiles all, uint cut_size, uint seed,
         std::size_t first_point)
-        : lanes(device.form().lanes), tiles(all), sample{3, seed, false} {
+        : lanes(device.form().pixels), tiles(all), sample{3, seed, false} {
         tiles.count = std::min(tiles.count, most_tiles);
         first.tile_count = second.tile_count = tiles.count;
         Buffer<Surface> points = device.allocate<Surface>(item_count(tiles));

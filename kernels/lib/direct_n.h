@@ -17,7 +17,7 @@ typedef struct Lights_n {
 
 #define NO_LIGHT 0xffffffffu
 
-static Lights_n load_lights_n(__global const Light* lights, uint_n indices, int_n valid) {
+INLINE Lights_n load_lights_n(__global const Light* lights, uint_n indices, int_n valid) {
     float_n rows[16];
     load_columns((__global const float*)lights, sizeof(Light) / sizeof(float), indices, rows);
     Lights_n l = {(uint_n)(NO_LIGHT),
@@ -47,7 +47,7 @@ typedef struct Direct_n {
 } Direct_n;
 
 // The lights, or their points (u, v), as lib/lights.h has them.
-static Direct_n direct_n(const Lights_n* l, const Points_n* p, const Origins_n* from, float_n u,
+INLINE Direct_n direct_n(const Lights_n* l, const Points_n* p, const Origins_n* from, float_n u,
                          float_n v) {
     const float_n zero = (float_n)(0.0f), one = (float_n)(1.0f);
     const float_n px = p->px, py = p->py, pz = p->pz;

@@ -13,7 +13,7 @@
 #endif
 
 // 1 / x, of numbers from 1e-30 to 1e30.
-static float_n inverse_n(float_n x) {
+INLINE float_n inverse_n(float_n x) {
 #if APPROXIMATE_INVERSE
     const float_n r = __builtin_ia32_rcp14ps512_mask(x, x, (ushort)0xffffu);
     return fma(r, fma(-x, r, 1.0f), r);
@@ -23,7 +23,7 @@ static float_n inverse_n(float_n x) {
 }
 
 // 1 / sqrt(x), of the same.
-static float_n inverse_root_n(float_n x) {
+INLINE float_n inverse_root_n(float_n x) {
 #if APPROXIMATE_INVERSE
     const float_n r = __builtin_ia32_rsqrt14ps512_mask(x, x, (ushort)0xffffu);
     return fma(0.5f * r, fma(-x * r, r, 1.0f), r);
@@ -33,7 +33,7 @@ static float_n inverse_root_n(float_n x) {
 }
 
 // sqrt(x), of numbers from 0 to 1e30.
-static float_n root_n(float_n x) { return x * inverse_root_n(max(x, 1e-30f)); }
+INLINE float_n root_n(float_n x) { return x * inverse_root_n(max(x, 1e-30f)); }
 
 static float inverse_1(float x) { return 1.0f / x; }
 static float inverse_root_1(float x) { return 1.0f / sqrt(x); }

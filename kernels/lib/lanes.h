@@ -7,6 +7,9 @@
 #ifndef MANYLIGHT_LIB_LANES_H
 #define MANYLIGHT_LIB_LANES_H
 
+// For functions that take vectors by value, which some registers are too small for.
+#define INLINE static inline __attribute__((always_inline))
+
 #define JOIN_TOKENS(a, b) a##b
 #define JOIN(a, b) JOIN_TOKENS(a, b)
 
@@ -38,7 +41,7 @@ typedef OF_LANES(uint) uint_n;
 #else
 // PoCL turns these conversions of a comparison into one mask move; any() becomes branches. The
 // product gathers the lowest bits of eight bytes in its highest byte.
-static uint lanes_8(int8 comparison) {
+INLINE uint lanes_8(int8 comparison) {
     const ulong bytes = as_ulong(convert_char8(comparison)) & 0x0101010101010101ul;
     return (uint)((bytes * 0x0102040810204080ul) >> 56);
 }
@@ -46,13 +49,13 @@ static uint lanes_8(int8 comparison) {
 #if defined(__SSE2__) && !defined(PORTABLE_LANES)
 #define lanes_4(comparison) (uint) __builtin_ia32_movmskps(as_float4(comparison))
 #else
-static uint lanes_4(int4 comparison) {
+INLINE uint lanes_4(int4 comparison) {
     const uint bytes = as_uint(convert_char4(comparison)) & 0x01010101u;
     return (bytes * 0x01020408u) >> 24;
 }
 #endif
 #define lanes_16(comparison) lanes_of_halves((comparison).lo, (comparison).hi)
-static uint lanes_of_halves(int8 low, int8 high) { return lanes_8(low) | (lanes_8(high) << 8); }
+INLINE uint lanes_of_halves(int8 low, int8 high) { return lanes_8(low) | (lanes_8(high) << 8); }
 #endif
 #define lanes_1(comparison) ((comparison) ? 1u : 0u)
 #define lanes_n JOIN(lanes_, LANES)
@@ -68,41 +71,41 @@ static uint lowest(uint lanes) { return 31u - (uint)clz(lanes & (0u - lanes)); }
 
 // The number of each lane, the least number, the sum, and lanes `lanes` of a vector.
 #if LANES == 16
-static int_n lane_numbers(void) {
+INLINE int_n lane_numbers(void) {
     return (int_n)(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
 }
-static float lowest_of(float_n v) {
+INLINE float lowest_of(float_n v) {
     const float8 a = min(v.lo, v.hi);
     const float4 b = min(a.lo, a.hi);
     const float2 c = min(b.lo, b.hi);
     return min(c.x, c.y);
 }
-static float sum_of(float_n v) {
+INLINE float sum_of(float_n v) {
     const float8 a = v.lo + v.hi;
     const float4 b = a.lo + a.hi;
     return b.x + b.y + (b.z + b.w);
 }
 #elif LANES == 8
-static int_n lane_numbers(void) { return (int_n)(0, 1, 2, 3, 4, 5, 6, 7); }
-static float lowest_of(float_n v) {
+INLINE int_n lane_numbers(void) { return (int_n)(0, 1, 2, 3, 4, 5, 6, 7); }
+INLINE float lowest_of(float_n v) {
     const float4 a = min(v.lo, v.hi);
     const float2 b = min(a.lo, a.hi);
     return min(b.x, b.y);
 }
-static float sum_of(float_n v) {
+INLINE float sum_of(float_n v) {
     const float4 a = v.lo + v.hi;
     return a.x + a.y + (a.z + a.w);
 }
 #elif LANES == 4
-static int_n lane_numbers(void) { return (int_n)(0, 1, 2, 3); }
-static float lowest_of(float_n v) {
+INLINE int_n lane_numbers(void) { return (int_n)(0, 1, 2, 3); }
+INLINE float lowest_of(float_n v) {
     const float2 a = min(v.lo, v.hi);
     return min(a.x, a.y);
 }
-static float sum_of(float_n v) { return v.x + v.y + (v.z + v.w); }
+INLINE float sum_of(float_n v) { return v.x + v.y + (v.z + v.w); }
 #elif LANES == 1
-static int_n lane_numbers(void) { return 0; }
-static float sum_of(float_n v) { return v; }
+INLINE int_n lane_numbers(void) { return 0; }
+INLINE float sum_of(float_n v) { return v; }
 #endif
 
 #if LANES == 1
@@ -117,28 +120,28 @@ static float sum_of(float_n v) { return v; }
 
 // a and b in turns: of their first, and of their second halves.
 #if LANES == 16
-static float_n zip_low(float_n a, float_n b) {
+INLINE float_n zip_low(float_n a, float_n b) {
     return (float_n)(a.s0, b.s0, a.s1, b.s1, a.s2, b.s2, a.s3, b.s3, a.s4, b.s4, a.s5, b.s5, a.s6,
                      b.s6, a.s7, b.s7);
 }
-static float_n zip_high(float_n a, float_n b) {
+INLINE float_n zip_high(float_n a, float_n b) {
     return (float_n)(a.s8, b.s8, a.s9, b.s9, a.sa, b.sa, a.sb, b.sb, a.sc, b.sc, a.sd, b.sd, a.se,
                      b.se, a.sf, b.sf);
 }
 #elif LANES == 8
-static float_n zip_low(float_n a, float_n b) {
+INLINE float_n zip_low(float_n a, float_n b) {
     return (float_n)(a.s0, b.s0, a.s1, b.s1, a.s2, b.s2, a.s3, b.s3);
 }
-static float_n zip_high(float_n a, float_n b) {
+INLINE float_n zip_high(float_n a, float_n b) {
     return (float_n)(a.s4, b.s4, a.s5, b.s5, a.s6, b.s6, a.s7, b.s7);
 }
 #elif LANES == 4
-static float_n zip_low(float_n a, float_n b) { return (float_n)(a.s0, b.s0, a.s1, b.s1); }
-static float_n zip_high(float_n a, float_n b) { return (float_n)(a.s2, b.s2, a.s3, b.s3); }
+INLINE float_n zip_low(float_n a, float_n b) { return (float_n)(a.s0, b.s0, a.s1, b.s1); }
+INLINE float_n zip_high(float_n a, float_n b) { return (float_n)(a.s2, b.s2, a.s3, b.s3); }
 #endif
 
 #if LANES > 1
-static void zip_rows(const float_n* rows, float_n* zipped) {
+INLINE void zip_rows(const float_n* rows, float_n* zipped) {
     for (uint i = 0u; i < LANES / 2u; ++i) {
         zipped[2u * i] = zip_low(rows[i], rows[i + LANES / 2u]);
         zipped[2u * i + 1u] = zip_high(rows[i], rows[i + LANES / 2u]);
@@ -147,7 +150,7 @@ static void zip_rows(const float_n* rows, float_n* zipped) {
 
 // Turns the rows of a square to columns: each zip moves the top bit of the row's number below the
 // column's.
-static void transpose(float_n* rows) {
+INLINE void transpose(float_n* rows) {
     float_n zipped[LANES];
     zip_rows(rows, zipped);
     zip_rows(zipped, rows);
@@ -163,14 +166,15 @@ static void transpose(float_n* rows) {
 
 // The first 16 numbers of the lanes' structures, one by one: columns[k] gets number k of all.
 // `structures` has structures of `size` numbers.
-static void load_columns(__global const float* structures, uint size, uint_n indices,
+INLINE void load_columns(__global const float* structures, uint size, uint_n indices,
                          float_n* columns) {
 #if LANES == 1
     for (uint k = 0u; k < 16u; ++k) columns[k] = structures[(ulong)size * indices + k];
 #else
     for (uint lane = 0u; lane < LANES; ++lane) {
         __global const float* own = structures + (ulong)size * UINT_LANE(indices, lane);
-        for (uint k = 0u; k < 16u / LANES; ++k) columns[k * LANES + lane] = FLOATS_AT(own + k * LANES);
+        for (uint k = 0u; k < 16u / LANES; ++k)
+            columns[k * LANES + lane] = FLOATS_AT(own + k * LANES);
     }
     for (uint k = 0u; k < 16u / LANES; ++k) transpose(columns + k * LANES);
 #endif

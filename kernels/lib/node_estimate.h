@@ -97,7 +97,7 @@ static Node_1 load_node(__global const LightNode* node, __global const Light* li
 }
 #elif WIDE_NODES
 // The nodes of all lanes, with their numbers of lights and the first of these.
-static Node_n load_nodes_n(__global const LightNode* nodes, __global const Light* lights,
+INLINE Node_n load_nodes_n(__global const LightNode* nodes, __global const Light* lights,
                            uint_n indices, uint_n* first, uint_n* count) {
     float_n rows[16];
     load_columns((__global const float*)nodes, sizeof(LightNode) / sizeof(float), indices, rows);
@@ -162,13 +162,13 @@ typedef struct NAMED(Color) {
     REAL red, green, blue;
 } NAMED(Color);
 
-static REAL NAMED(dot3)(REAL ax, REAL ay, REAL az, REAL bx, REAL by, REAL bz) {
+INLINE REAL NAMED(dot3)(REAL ax, REAL ay, REAL az, REAL bx, REAL by, REAL bz) {
     return fma(ax, bx, fma(ay, by, az * bz));
 }
 
 // (k + sqrt(k^2 + v)) / 2: max(k, 0), smoothed over sqrt(v); positive where v is, whatever the
 // rounding.
-static REAL NAMED(soft)(REAL k, REAL v) {
+INLINE REAL NAMED(soft)(REAL k, REAL v) {
     const REAL t = 0.5f * (fabs(k) + NAMED(root)(fma(k, k, v)));
     return WHERE(k >= 0.0f, t, 0.25f * v * NAMED(inverse)(max(t, (REAL)(1e-30f))));
 }
@@ -176,7 +176,7 @@ static REAL NAMED(soft)(REAL k, REAL v) {
 // Radiance reflected to the camera per illuminance from unit directions w: glTF's BRDF (lib/brdf.h)
 // with a lobe that is widened by the lights' squared angular spread, times cosines and all else in
 // `factor`. What stage reflections has of a light of `solid_angle` is left to it.
-static NAMED(Color) NAMED(reflect)(const NAMED(Points) * p, REAL wx, REAL wy, REAL wz, REAL spread,
+INLINE NAMED(Color) NAMED(reflect)(const NAMED(Points) * p, REAL wx, REAL wy, REAL wz, REAL spread,
                                    REAL solid_angle, REAL factor) {
     NAMED(Color) c;
 #if HAS_GGX
@@ -238,14 +238,14 @@ static NAMED(Color) NAMED(reflect)(const NAMED(Points) * p, REAL wx, REAL wy, RE
     return c;
 }
 
-static REAL NAMED(color_luminance)(NAMED(Color) c) {
+INLINE REAL NAMED(color_luminance)(NAMED(Color) c) {
     return 0.2126f * c.red + 0.7152f * c.green + 0.0722f * c.blue;
 }
 #endif
 
 // The lights' part: their intensity's factor and the unit direction to their centre. 0 where none
 // of them can be above the surface.
-static REAL NODE_NAMED(node_geometry)(const NODE* node, const NAMED(Points) * p, REAL* wx, REAL* wy,
+INLINE REAL NODE_NAMED(node_geometry)(const NODE* node, const NAMED(Points) * p, REAL* wx, REAL* wy,
                                       REAL* wz, REAL* spread) {
     const REAL dx = node->x - p->px, dy = node->y - p->py, dz = node->z - p->pz;
     const REAL distance2 = NAMED(dot3)(dx, dy, dz, dx, dy, dz);
@@ -324,7 +324,7 @@ static REAL NODE_NAMED(node_geometry)(const NODE* node, const NAMED(Points) * p,
 
 // The node's radiance reflected to the camera, cd/m2: intensity x geometry x BRDF towards the
 // centre.
-static NAMED(Color) NODE_NAMED(node_estimate)(const NODE* node, const NAMED(Points) * p) {
+INLINE NAMED(Color) NODE_NAMED(node_estimate)(const NODE* node, const NAMED(Points) * p) {
     REAL wx, wy, wz, spread;
     const REAL geometry = NODE_NAMED(node_geometry)(node, p, &wx, &wy, &wz, &spread);
     NAMED(Color) c = NAMED(reflect)(p, wx, wy, wz, spread, (REAL)(0.0f), geometry);

@@ -27,13 +27,14 @@ typedef struct Packet {
     int_n near_x[PARTS], near_y[PARTS], near_z[PARTS];  // as in Prepared
     float3 lowest, highest;                             // bounds of the inverses (ix, iy, iz)
     float furthest;                                     // the last end
+    uint renumber;                                      // to be added to the indices of triangles
 } Packet;
 
-static float_n safe_inverse_n(float_n d) {
+INLINE float_n safe_inverse_n(float_n d) {
     return 1.0f / select(d, copysign((float_n)(1e-20f), d), fabs(d) < 1e-20f);
 }
 
-static float highest_of(float_n v) { return -lowest_of(-v); }
+INLINE float highest_of(float_n v) { return -lowest_of(-v); }
 
 static float last_end(const Packet* p) {
     float_n last = p->end[0];
@@ -41,8 +42,9 @@ static float last_end(const Packet* p) {
     return highest_of(last);
 }
 
-// Completes a packet that has an origin, directions and ends.
+// Completes a packet of the world that has an origin, directions and ends.
 static void prepare_packet(Packet* p) {
+    p->renumber = 0u;
     const float_n far = (float_n)(INFINITY);
     float_n low_x = far, low_y = far, low_z = far, high_x = -far, high_y = -far, high_z = -far;
     for (uint i = 0u; i < PARTS; ++i) {
@@ -146,7 +148,7 @@ typedef struct TriangleHits {
 } TriangleHits;
 
 // hit_block() the other way round: a part's rays against triangle `lane` of a block.
-static TriangleHits hit_triangle(const PreparedBlock* b, uint lane, const Packet* p, uint part) {
+INLINE TriangleHits hit_triangle(const PreparedBlock* b, uint lane, const Packet* p, uint part) {
     const float_n x = p->x[part], y = p->y[part], z = p->z[part], size = p->size[part];
 #define DOT(v) fma(x, LANE((v)[0], lane), fma(y, LANE((v)[1], lane), z* LANE((v)[2], lane)))
 #define WITH_MARGIN(margin, v) fma(size, LANE(margin, lane), as_float_n(as_int_n(DOT(v)) ^ sign))
@@ -200,7 +202,7 @@ static bool is_there_for(const Packet* p, uint ray, const PreparedBlock* b, uint
 }
 
 // Of a part's rays that hit it, those that it is there for.
-static int_n there_for_all(const Packet* p, uint part, int_n hit, const PreparedBlock* b, uint lane,
+INLINE int_n there_for_all(const Packet* p, uint part, int_n hit, const PreparedBlock* b, uint lane,
                            uint triangle, uint seen ALPHA_PARAMETERS) {
     if (alpha_of[triangle] == NO_ALPHA) return hit;
     for (uint rays = lanes_n(hit); rays; rays &= rays - 1u) {
@@ -226,6 +228,7 @@ static Packet packet_in_instance(const Packet* p, __global const Instance* in) {
         inside.end[i] = p->end[i];
     }
     prepare_packet(&inside);
+    inside.renumber = in->first - in->stored;
     return inside;
 }
 
@@ -247,10 +250,7 @@ static bool occlude_packet(BVH_PARAMETERS, Packet* p) {
 #if HAS_INSTANCES
     Packet inside;  // an instance; then p points to it
     Packet* const world = p;
-    int outside = 0;     // as in occluded()
-    uint renumber = 0u;  // to be added to the indices of triangles
-#elif HAS_ALPHA
-    const uint renumber = 0u;
+    int outside = 0;  // as in occluded()
 #endif
     while (top > 0) {
 #if HAS_INSTANCES
@@ -258,7 +258,6 @@ static bool occlude_packet(BVH_PARAMETERS, Packet* p) {
             leave_instance(p, world);
             p = world;
             outside = 0;
-            renumber = 0u;
         }
 #endif
         const int entry = stack[--top];
@@ -270,7 +269,6 @@ static bool occlude_packet(BVH_PARAMETERS, Packet* p) {
             inside = packet_in_instance(world, in);
             p = &inside;
             outside = top;
-            renumber = in->first - in->stored;
             stack[top++] = in->root;  // for the same rays
             continue;
         }
@@ -292,7 +290,7 @@ static bool occlude_packet(BVH_PARAMETERS, Packet* p) {
                     for (; found; found &= found - 1u) {
                         const uint t = lowest(found);
                         if (is_there_for(p, lane, &block, t, names[t],
-                                         names[t] + renumber ALPHA_ARGUMENTS))
+                                         names[t] + p->renumber ALPHA_ARGUMENTS))
                             break;
                     }
 #endif
@@ -307,7 +305,7 @@ static bool occlude_packet(BVH_PARAMETERS, Packet* p) {
                         int_n hit = hit_triangle(&block, triangle, p, part).hit;
 #if HAS_ALPHA
                         hit = there_for_all(p, part, hit, &block, triangle, names[triangle],
-                                            names[triangle] + renumber ALPHA_ARGUMENTS);
+                                            names[triangle] + p->renumber ALPHA_ARGUMENTS);
 #endif
                         const uint rays = lanes_n(hit);
                         if (!rays) continue;
@@ -336,7 +334,7 @@ static bool occlude_packet(BVH_PARAMETERS, Packet* p) {
 }
 
 // Shortens every ray to its closest hit, whose triangle `triangles` gets; ~0 where there is none.
-static void closest_hits(BVH_PARAMETERS, Packet* p, int_n* triangles) {
+INLINE void closest_hits(BVH_PARAMETERS, Packet* p, int_n* triangles) {
     int stack[BVH_STACK];
     float distance[BVH_STACK];
     uint masks[BVH_STACK];
@@ -349,9 +347,6 @@ static void closest_hits(BVH_PARAMETERS, Packet* p, int_n* triangles) {
     Packet inside;  // as in occlude_packet()
     Packet* const world = p;
     int outside = 0;
-    int renumber = 0;  // to be added to the indices of triangles
-#else
-    const int renumber = 0;
 #endif
     while (top > 0) {
 #if HAS_INSTANCES
@@ -359,7 +354,6 @@ static void closest_hits(BVH_PARAMETERS, Packet* p, int_n* triangles) {
             leave_instance(p, world);
             p = world;
             outside = 0;
-            renumber = 0;
         }
 #endif
         const int entry = stack[--top];
@@ -371,14 +365,13 @@ static void closest_hits(BVH_PARAMETERS, Packet* p, int_n* triangles) {
             inside = packet_in_instance(world, in);
             p = &inside;
             outside = top;
-            renumber = (int)(in->first - in->stored);
             stack[top++] = in->root;  // for the same rays, at the same distance
             continue;
         }
 #endif
         if (entry < 0) {
             __global const float_k* rows = bvh_blocks + (~entry >> 4) * BLOCK_ROWS;
-            __global const int* names = (__global const int*)(rows + 9);
+            __global const uint* names = (__global const uint*)(rows + 9);
             const PreparedBlock block = prepare_block(rows, p->origin);
             bool any_hit = false;
             const uint all = (uint)(~entry & 15) + 1u;
@@ -394,12 +387,12 @@ static void closest_hits(BVH_PARAMETERS, Packet* p, int_n* triangles) {
                         const uint triangle = lowest(lanes);
                         if (LANE(t, triangle) >= LANE(p->end, lane)) continue;
 #if HAS_ALPHA
-                        if (!is_there_for(p, lane, &block, triangle, (uint)names[triangle],
-                                          (uint)(names[triangle] + renumber) ALPHA_ARGUMENTS))
+                        if (!is_there_for(p, lane, &block, triangle, names[triangle],
+                                          names[triangle] + p->renumber ALPHA_ARGUMENTS))
                             continue;
 #endif
                         SET_LANE(p->end, lane, LANE(t, triangle));
-                        ((int*)triangles)[lane] = names[triangle] + renumber;
+                        ((int*)triangles)[lane] = (int)(names[triangle] + p->renumber);
                         any_hit = true;
                     }
                 }
@@ -409,14 +402,15 @@ static void closest_hits(BVH_PARAMETERS, Packet* p, int_n* triangles) {
                         if (PARTS > 1 && !PART_OF(mask, part)) continue;
                         TriangleHits hits = hit_triangle(&block, triangle, p, part);
 #if HAS_ALPHA
-                        hits.hit = there_for_all(
-                            p, part, hits.hit, &block, triangle, (uint)names[triangle],
-                            (uint)(names[triangle] + renumber) ALPHA_ARGUMENTS);
+                        hits.hit =
+                            there_for_all(p, part, hits.hit, &block, triangle, names[triangle],
+                                          names[triangle] + p->renumber ALPHA_ARGUMENTS);
 #endif
                         if (!lanes_n(hits.hit)) continue;
                         p->end[part] = select(p->end[part], hits.t / hits.n, hits.hit);
                         triangles[part] =
-                            select(triangles[part], (int_n)(names[triangle] + renumber), hits.hit);
+                            select(triangles[part], (int_n)((int)(names[triangle] + p->renumber)),
+                                   hits.hit);
                         any_hit = true;
                     }
             }

@@ -23,7 +23,7 @@ static uint4 random_bits(uint pixel, uint pixel_sample, uint dimension, uint see
 }
 
 // The same for LANES pixels and dimensions: v[0] to v[3].
-static void random_bits_n(uint_n pixels, uint pixel_sample, uint_n dimensions, uint seed,
+INLINE void random_bits_n(uint_n pixels, uint pixel_sample, uint_n dimensions, uint seed,
                           uint_n* v) {
     v[0] = pixels * 1664525u + 1013904223u;
     v[1] = (uint_n)(pixel_sample * 1664525u + 1013904223u);
@@ -47,7 +47,7 @@ static uint step_bits(uint bits, uint i) {
 }
 
 // The same for LANES.
-static uint_n step_bits_n(uint_n bits, uint i) {
+INLINE uint_n step_bits_n(uint_n bits, uint i) {
     const uint_n state = (bits + i * 0x9e3779b9u) * 747796405u + 2891336453u;
     const uint_n word = ((state >> ((state >> 28u) + 4u)) ^ state) * 277803737u;
     return (word >> 22u) ^ word;
@@ -66,7 +66,7 @@ static uint_n step_bits_n(uint_n bits, uint i) {
 // A float in [0, 1) from the top 24 bits.
 static float unit_float(uint bits) { return (float)(bits >> 8) * 0x1p-24f; }
 
-static float_n unit_float_n(uint_n bits) { return convert_float_n(bits >> 8u) * 0x1p-24f; }
+INLINE float_n unit_float_n(uint_n bits) { return convert_float_n(bits >> 8u) * 0x1p-24f; }
 
 static uint reverse_bits(uint v) {
     v = (v >> 16) | (v << 16);

@@ -24,7 +24,7 @@ typedef struct Receivers_n {
 #define SET_LANES(field, value) \
     p->field = left == ALL_LANES ? (float_n)(value) : select(p->field, (float_n)(value), lanes)
 // What the lanes' materials have; most often they share one.
-static void load_materials_n(__global const Material* materials, uint_n indices, Points_n* p) {
+INLINE void load_materials_n(__global const Material* materials, uint_n indices, Points_n* p) {
     int_n todo = (int_n)(-1);
     for (uint left = ALL_LANES; left; left = lanes_n(todo)) {
         const uint index = UINT_LANE(indices, lowest(left));
@@ -48,7 +48,7 @@ static void load_materials_n(__global const Material* materials, uint_n indices,
 }
 #undef SET_LANES
 
-static Receivers_n load_receivers_n(Tiles tiles, Pass pass, uint group, Camera camera,
+INLINE Receivers_n load_receivers_n(Tiles tiles, Pass pass, uint group, Camera camera,
                                     __global const Surface* surfaces,
                                     __global const Material* materials) {
     const float_n zero = (float_n)(0.0f), one = (float_n)(1.0f);
@@ -113,7 +113,7 @@ static Receivers_n load_receivers_n(Tiles tiles, Pass pass, uint group, Camera c
 
 #define PERMUTE(field) p.field = permute_n(all->field, lanes)
 // The points of other lanes.
-static Points_n permute_points(const Points_n* all, uint_n lanes) {
+INLINE Points_n permute_points(const Points_n* all, uint_n lanes) {
     Points_n p;
     PERMUTE(px);
     PERMUTE(py);
@@ -141,7 +141,7 @@ static Points_n permute_points(const Points_n* all, uint_n lanes) {
     return p;
 }
 
-static Origins_n permute_origins(const Origins_n* all, uint_n lanes) {
+INLINE Origins_n permute_origins(const Origins_n* all, uint_n lanes) {
     Origins_n p;
     PERMUTE(x);
     PERMUTE(y);

@@ -54,17 +54,17 @@ typedef struct Source {
 #endif
 } Source;
 
-static float_n seen_of(const Source* s, uint slot) {
+INLINE float_n seen_of(const Source* s, uint slot) {
     return select((float_n)(0.0f), FLOATS_AT(s->visible + 16u * slot), s->valid);
 }
 
-static void add_color(Color_n* sum, Color_n c, float_n factor) {
+INLINE void add_color(Color_n* sum, Color_n c, float_n factor) {
     sum->red = fma(c.red, factor, sum->red);
     sum->green = fma(c.green, factor, sum->green);
     sum->blue = fma(c.blue, factor, sum->blue);
 }
 
-static Weighed weigh(const Source* s, uint at, float_n visible) {
+INLINE Weighed weigh(const Source* s, uint at, float_n visible) {
     __global const LightNode* node = s->nodes + at;
     const Node_1 own = load_node(node, s->lights);
     Weighed w;
@@ -76,7 +76,7 @@ static Weighed weigh(const Source* s, uint at, float_n visible) {
 }
 
 // Whether any pixel wants the node's children: where its lights lie close, its estimate is coarse.
-static bool wants_children(__global const LightNode* node, const Points_n* p, float_n weight,
+INLINE bool wants_children(__global const LightNode* node, const Points_n* p, float_n weight,
                            float_n limit) {
     const float_n dx = node->centre.x - p->px, dy = node->centre.y - p->py,
                   dz = node->centre.z - p->pz;
@@ -96,7 +96,7 @@ typedef struct Walk {
 static void start_walk(Walk* w) { w->next_slot = w->top = w->splits = 0u; }
 
 // Whether there is one more node; if so, the node and its weights.
-static bool next_node(const Source* s, Walk* w, uint* node, Weighed* own, float_n* seen) {
+INLINE bool next_node(const Source* s, Walk* w, uint* node, Weighed* own, float_n* seen) {
     while (w->top > 0u || w->next_slot < s->cut_size) {
         const bool is_cut = w->top == 0u;
         if (is_cut) w->slot = w->next_slot++;
@@ -137,7 +137,7 @@ typedef struct Weights {
 #if LANES > 1
 typedef uint Place;
 static void start_weights(Place* place) { *place = 0u; }
-static bool next_weight(const Weights* w, const Source* s, Place* place, uint* entry,
+INLINE bool next_weight(const Weights* w, const Source* s, Place* place, uint* entry,
                         float_n* value) {
     if (*place == w->size) return false;
     *entry = w->entries[*place];
@@ -147,7 +147,7 @@ static bool next_weight(const Weights* w, const Source* s, Place* place, uint* e
 #else
 typedef Walk Place;
 static void start_weights(Place* place) { start_walk(place); }
-static bool next_weight(const Weights* w, const Source* s, Place* place, uint* entry,
+INLINE bool next_weight(const Weights* w, const Source* s, Place* place, uint* entry,
                         float_n* value) {
     uint node;
     Weighed own;
@@ -195,7 +195,7 @@ static void find_weights(Weights* w, Source* s, float samples) {
 
 // What one draw is expected to be like. Its mean square is the square of the weights' sum, its mean
 // what the control variate leaves of the brightness.
-static void expect(const Weights* w, float_n* variance, float_n* brightness) {
+INLINE void expect(const Weights* w, float_n* variance, float_n* brightness) {
     *brightness = color_luminance_n(w->control);
     const float known = (1.0f - CONTROL) * (1.0f - CONTROL) - PIXEL_VARIANCE;
     *variance = max(w->sum * w->sum - known * *brightness * *brightness, 0.0f);
@@ -204,7 +204,7 @@ static void expect(const Weights* w, float_n* variance, float_n* brightness) {
 // Draws by the expected deviation of the pixel relative to its brightness, as relMSE weighs it.
 // From one on a whole number, up or down by `rounding` in [0, 1): the number of draws adds no
 // noise.
-static float_n find_samples(const Weights* w, Budget budget, float_n rounding) {
+INLINE float_n find_samples(const Weights* w, Budget budget, float_n rounding) {
     if (budget.factor == 0.0f) return (float_n)(budget.samples);
     float_n variance, brightness;
     expect(w, &variance, &brightness);
@@ -218,7 +218,7 @@ static float_n find_samples(const Weights* w, Budget budget, float_n rounding) {
 
 // scale[lane], by which weights become expected numbers of draws, at most 1 where a node is one
 // point, that add up to `samples`, or to the number of nodes if all are certain.
-static float_n find_scale(const Weights* w, const Source* s, float_n samples) {
+INLINE float_n find_scale(const Weights* w, const Source* s, float_n samples) {
     // Just below, so that rounding never makes one draw too many.
     const float_n all = samples * 0.999999f;
     float_n scale = all / max(w->sum, 1e-30f);
@@ -250,7 +250,7 @@ static float_n find_scale(const Weights* w, const Source* s, float_n samples) {
 // Where in [0, 1) the systematic draws of pixels start: Jimenez' interleaved gradient noise
 // ("Next Generation Post Processing in Call of Duty: Advanced Warfare", 2014), shifted at random
 // for every pass: what a pass draws is independent of earlier ones, on which its weights depend.
-static float_n draw_starts(uint_n x, uint_n y, float shift) {
+INLINE float_n draw_starts(uint_n x, uint_n y, float shift) {
     float_n whole;
     const float_n inner =
         fract(0.06711056f * convert_float_n(x) + 0.00583715f * convert_float_n(y), &whole);

@@ -20,7 +20,7 @@ typedef struct Descent_n {
     float_n probability;  // 0: none can contribute
 } Descent_n;
 
-static Descent_n descend_n(__global const LightNode* nodes, __global const Light* lights,
+INLINE Descent_n descend_n(__global const LightNode* nodes, __global const Light* lights,
                            const Points_n* points, int_n used, uint_n start, float_n u, uint_n bits,
                            Node_n* drawn) {
     Descent_n d;
