@@ -96,11 +96,12 @@ def list_devices(place, program):
 
 def own_places(program):
     """One for every device of the machine by itself."""
-    machine = Place("own")
-    for device in list_devices(machine, program):
+    names = []
+    for device in list_devices(Place("own"), program):
         short = "pocl" if device.platform.startswith("Portable") else device.platform.split()[0]
-        name = "own-" + re.sub(r"[^a-z0-9]+", "", short.lower())
-        yield Place(name if device.number == 0 else f"{name}{device.number}", device=device,
+        names.append("own-" + re.sub(r"[^a-z0-9]+", "", short.lower()))
+        number = names.count(names[-1])
+        yield Place(names[-1] + (str(number) if number > 1 else ""), device=device,
                     missing="" if device.usable else "the program says that it cannot render")
 
 
