@@ -65,6 +65,6 @@ KERNEL void accumulate_add(Tiles tiles, IMAGE_PARAMETERS) {
 
 // Of the pixels of a pass.
 KERNEL void accumulate_add_pass(Tiles tiles, Pass pass, IMAGE_PARAMETERS) {
-    if (get_global_id(0) < 16u * pass_groups(pass))
+    if (get_global_id(0) < LANES * pass_groups(pass))
         add_sample(tiles, pass_item(pass, get_global_id(0)), IMAGE_ARGUMENTS);
 }

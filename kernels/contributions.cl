@@ -51,7 +51,7 @@ KERNEL void contributions_hide(uint light_count, uint first_row, uint row_count,
 KERNEL void contributions_sum(__global const float* contributions, uint light_count, uint first_row,
                               uint row_count, __global RowSum* sums) {
     const uint chunks = (light_count + LIGHT_CHUNK - 1u) / LIGHT_CHUNK;
-    const uint row = (uint)(get_global_id(0) / chunks);
+    const uint row = (uint)(get_global_id(0) / max(chunks, 1u));
     if (row >= row_count) return;
     const uint chunk = (uint)(get_global_id(0) % chunks);
     const uint end = min((chunk + 1u) * LIGHT_CHUNK, light_count);

@@ -22,7 +22,7 @@ KERNEL void pdf_quantise(__global uint* cdf, __global const Light* lights, uint 
                          uint row_count, __global const RowSum* totals, Mixture mixture,
                          __global uint* chunk_sums) {
     const uint chunks = (light_count + LIGHT_CHUNK - 1u) / LIGHT_CHUNK;
-    const uint row = (uint)(get_global_id(0) / chunks);
+    const uint row = (uint)(get_global_id(0) / max(chunks, 1u));
     if (row >= row_count) return;
     const uint chunk = (uint)(get_global_id(0) % chunks);
     const RowSum total = totals[row];
@@ -59,7 +59,7 @@ KERNEL void pdf_scan(uint chunks, uint row_count, __global uint* chunk_sums) {
 KERNEL void pdf_add(__global uint* cdf, uint light_count, uint row_count,
                     __global const uint* chunk_sums) {
     const uint chunks = (light_count + LIGHT_CHUNK - 1u) / LIGHT_CHUNK;
-    const uint row = (uint)(get_global_id(0) / chunks);
+    const uint row = (uint)(get_global_id(0) / max(chunks, 1u));
     if (row >= row_count) return;
     const uint chunk = (uint)(get_global_id(0) % chunks);
     const uint end = min((chunk + 1u) * LIGHT_CHUNK, light_count);

@@ -112,6 +112,7 @@ TEST(contributions, packets_and_single_rays_agree) {
     const auto lights = static_cast<uint>(s.scene.lights.size());
     FOR_EACH_DEVICE(device) {
         Device d = device;
+        if (d.form().lanes == 1) continue;  // it has no packets
         const unsigned lanes = d.form().bvh_width;
         const WideBvh bvh = build_wide_bvh(s.scene, lanes, lanes, reach_of(s.scene, s.camera));
         DeviceScene uploaded = upload_scene(d, s.scene, bvh, s.camera);

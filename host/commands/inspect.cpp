@@ -285,6 +285,7 @@ int run_inspect(const InspectArguments& arguments) {
     if (file.empty())
         file = std::filesystem::path(arguments.scene.file).stem().string() + "-pixel.png";
     check_files(arguments, file);
+    const auto compilers = std::make_shared<Compilers>(arguments.scene.threads);
     const LoadedScene loaded = load(arguments.scene);
     refuse_scene_file(loaded.scene, "--output", file);
     const glm::uvec2 pixel(arguments.x, arguments.y);
@@ -297,6 +298,7 @@ int run_inspect(const InspectArguments& arguments) {
     options.height = loaded.height;
     Device device =
         Device::open(arguments.scene.device, arguments.scene.threads, arguments.scene.lanes);
+    device.help(compilers);
     const WideBvh bvh = build_bvh(loaded, device);
     Frame frame(device, loaded.scene, bvh, loaded.camera, options);
     if (frame.plan().batches > 1) {

@@ -247,6 +247,7 @@ int run_render(const RenderArguments& arguments) {
         for (const char* name : {"cluster", "representative"}) options.aovs.emplace_back(name);
     }
 
+    const auto compilers = std::make_shared<Compilers>(arguments.scene.threads);
     const LoadedScene loaded = load(arguments.scene, arguments.quiet);
     for (const auto& [option, path] : files_of(arguments, images))
         refuse_scene_file(loaded.scene, option, path);
@@ -262,6 +263,7 @@ int run_render(const RenderArguments& arguments) {
     options.height = loaded.height;
     Device device =
         Device::open(arguments.scene.device, arguments.scene.threads, arguments.scene.lanes);
+    device.help(compilers);
     const auto build_start = Clock::now();
     const WideBvh bvh = build_bvh(loaded, device, arguments.quiet);
     const double build_seconds = seconds_since(build_start);

@@ -21,6 +21,8 @@ struct DeviceMemory::Allocation {
 struct Device::Context {
     DeviceInfo info;
     DeviceForm form{};
+    std::size_t number = 0;  // in list_devices()
+    std::shared_ptr<Compilers> compilers;
     bool refuses_warnings = false;
     cl::Device device;
     cl::Context context;
@@ -31,19 +33,30 @@ struct Device::Context {
     std::map<std::string, double> stage_seconds;
     std::vector<std::pair<std::string, cl::Event>> running;  // stage and event of each launch
     std::map<std::string, cl::Program> programs;             // by file and options
+    std::vector<std::shared_ptr<Kernel::Built>> waiting;     // kernels that are not built
 
-    cl::Program& build(std::string_view file, const Defines& defines);
+    [[nodiscard]] std::string options(const Defines& defines) const;
+    // Builds a program once. Throws RuntimeError.
+    cl::Program& build(const std::string& file, const std::string& options);
     void collect();  // waits, and adds the running launches to stage_seconds
 };
 
 struct Kernel::Built {
-    std::shared_ptr<Device::Context> context;
-    cl::Kernel kernel;
+    Device::Context* context;  // which the kernel's owner keeps
+    std::string file;
+    std::string options;
     std::string stage;
     std::string name;
-    std::vector<std::string> parameters;
-    std::map<bool, bool> compiled;  // by whether the launch was a small one
+    std::size_t expected_items = 0;
+    cl::Kernel kernel;
+    std::vector<std::string> parameters;  // empty until it is built
+    std::map<bool, bool> compiled;        // by whether the launch was a small one
+
+    void build();
 };
+
+/// PoCL compiles a kernel for launches of fewer work-items apart from one for more.
+constexpr std::size_t few_items = 65536;
 
 /// All devices, in the order of list_devices().
 std::vector<cl::Device> all_devices();

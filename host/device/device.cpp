@@ -92,6 +92,7 @@ Device Device::open(std::string_view selector, unsigned threads, unsigned lanes)
     device.context_ = std::make_shared<Context>();
     Context& context = *device.context_;
     context.info = list_devices()[index];
+    context.number = index;
     context.form = lanes > 0 ? form_of(lanes) : form_for(context.info);
     try {
         context.device = all_devices()[index];
@@ -107,6 +108,10 @@ Device Device::open(std::string_view selector, unsigned threads, unsigned lanes)
 const DeviceInfo& Device::info() const { return context_->info; }
 
 const DeviceForm& Device::form() const { return context_->form; }
+
+void Device::help(std::shared_ptr<Compilers> compilers) {
+    context_->compilers = std::move(compilers);
+}
 
 void Device::refuse_warnings() { context_->refuses_warnings = true; }
 

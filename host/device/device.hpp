@@ -124,10 +124,36 @@ class Kernel {
     /// that `arguments` does not name, RuntimeError if the device refuses.
     void launch(std::size_t items, const Arguments& arguments);
 
+    /// Tells Device::compile() how many work-items launches will have at most: PoCL compiles a
+    /// kernel for many work-items apart from one for few.
+    void expect(std::size_t items);
+
+    struct Built;
+
   private:
     friend class Device;
-    struct Built;
+    std::shared_ptr<void> context_;  // the device's, which the kernel keeps
     std::shared_ptr<Built> built_;
+};
+
+/// Processes that help Device::compile() once. PoCL compiles one kernel at a time in a process;
+/// what others compile, it finds in its cache.
+class Compilers {
+  public:
+    /// Starts them, before anything touches OpenCL: as many as there are processors, or `threads`,
+    /// less one. Where the system allows none, there are none.
+    explicit Compilers(unsigned threads);
+    ~Compilers();
+    Compilers(const Compilers&) = delete;
+    Compilers& operator=(const Compilers&) = delete;
+
+    /// Compiles kernels of a device, by its number in list_devices(), into PoCL's cache. What fails
+    /// is left to fail when it is built.
+    void compile(std::size_t device, std::size_t local_size,
+                 const std::vector<std::shared_ptr<Kernel::Built>>& kernels);
+
+  private:
+    std::vector<int> sockets_;
 };
 
 /// One OpenCL device with a queue. Copies share it.
@@ -170,10 +196,16 @@ class Device {
         return Buffer<T>(allocate_bytes(values.size() * sizeof(T), values.data()));
     }
 
-    /// A kernel of kernels/`file`, built with `defines` for this device; its times count for
-    /// `stage`. Programs are built once. Throws RuntimeError with the device, options and log.
+    /// A kernel of kernels/`file`, to be built with `defines` for this device at its first launch,
+    /// or by compile(); its times count for `stage`. Programs are built once. A build that fails
+    /// throws RuntimeError with the device, its driver, options and log.
     [[nodiscard]] Kernel kernel(std::string_view file, const std::string& name,
                                 const Defines& defines, const std::string& stage);
+
+    /// Builds all kernels that were asked for and not launched yet; with helpers, which serve once,
+    /// PoCL's on several processors. Kernels find nothing to do where all their arguments are 0.
+    void compile();
+    void help(std::shared_ptr<Compilers> compilers);
 
     /// Waits until all that was launched is done.
     void finish();

@@ -1,21 +1,14 @@
 // SPDX-License-Identifier: MIT
-#include <chrono>
 #include <stdexcept>
 
+#include "clock.hpp"
 #include "device/context.hpp"
 #include "device/kernel_sources.hpp"
 #include "error.hpp"
 
 namespace manylight {
-namespace {
 
-using Clock = std::chrono::steady_clock;
-
-double seconds_since(Clock::time_point start) {
-    return std::chrono::duration<double>(Clock::now() - start).count();
-}
-
-std::string build_options(const Defines& defines, const DeviceForm& form, bool refuses_warnings) {
+std::string Device::Context::options(const Defines& defines) const {
     // -w: a warning of whatever compiler a driver brings concerns no user. -cl-kernel-arg-info:
     // arguments are set by name.
     std::string options = refuses_warnings ? "-cl-std=CL1.2 -Werror" : "-cl-std=CL1.2 -w";
@@ -26,14 +19,10 @@ std::string build_options(const Defines& defines, const DeviceForm& form, bool r
     return options;
 }
 
-}  // namespace
-
-cl::Program& Device::Context::build(std::string_view file, const Defines& defines) {
-    const std::string options = build_options(defines, form, refuses_warnings);
+cl::Program& Device::Context::build(const std::string& file, const std::string& options) {
     const std::string key = fmt::format("{} {}", file, options);
     const auto known = programs.find(key);
     if (known != programs.end()) return known->second;
-    const auto start = Clock::now();
     cl::Program program(context, assemble_source(file));
     try {
         program.build(device, options.c_str());
@@ -42,35 +31,61 @@ cl::Program& Device::Context::build(std::string_view file, const Defines& define
                            info.platform, info.driver, file, describe(error), options,
                            program.getBuildInfo<CL_PROGRAM_BUILD_LOG>(device));
     }
-    compile_seconds += seconds_since(start);
     return programs.emplace(key, program).first->second;
+}
+
+void Kernel::Built::build() {
+    if (!parameters.empty()) return;
+    const auto start = Clock::now();
+    try {
+        kernel = cl::Kernel(context->build(file, options), name.c_str());
+        const auto count = kernel.getInfo<CL_KERNEL_NUM_ARGS>();
+        for (cl_uint i = 0; i < count; ++i) {
+            std::string parameter = kernel.getArgInfo<CL_KERNEL_ARG_NAME>(i);
+            while (!parameter.empty() && parameter.back() == '\0') parameter.pop_back();
+            parameters.push_back(std::move(parameter));
+        }
+    } catch (const cl::Error& error) {
+        throw RuntimeError("{}: {}: {}", context->info.name, name, describe(error));
+    }
+    context->compile_seconds += seconds_since(start);
 }
 
 Kernel Device::kernel(std::string_view file, const std::string& name, const Defines& defines,
                       const std::string& stage) {
     Kernel kernel;
+    kernel.context_ = context_;
     kernel.built_ = std::make_shared<Kernel::Built>();
     Kernel::Built& built = *kernel.built_;
-    built.context = context_;
+    built.context = context_.get();
+    built.file = file;
+    built.options = context_->options(defines);
     built.stage = stage;
     built.name = name;
-    try {
-        built.kernel = cl::Kernel(context_->build(file, defines), name.c_str());
-        const auto count = built.kernel.getInfo<CL_KERNEL_NUM_ARGS>();
-        for (cl_uint i = 0; i < count; ++i) {
-            std::string parameter = built.kernel.getArgInfo<CL_KERNEL_ARG_NAME>(i);
-            while (!parameter.empty() && parameter.back() == '\0') parameter.pop_back();
-            built.parameters.push_back(std::move(parameter));
-        }
-    } catch (const cl::Error& error) {
-        throw RuntimeError("{}: {}: {}", context_->info.name, name, describe(error));
-    }
+    context_->waiting.push_back(kernel.built_);
     return kernel;
 }
+
+void Device::compile() {
+    std::vector<std::shared_ptr<Kernel::Built>> kernels;
+    for (const auto& kernel : std::exchange(context_->waiting, {}))
+        if (kernel.use_count() > 1 && kernel->parameters.empty()) kernels.push_back(kernel);
+    // Others than PoCL compile programs as they are built, and need not have a cache.
+    if (context_->compilers && context_->info.platform == "Portable Computing Language") {
+        const auto start = Clock::now();
+        context_->compilers->compile(context_->number, context_->form.local_size, kernels);
+        context_->compilers.reset();
+        context_->compile_seconds += seconds_since(start);
+    }
+    for (const auto& kernel : kernels) kernel->build();
+}
+
+void Kernel::expect(std::size_t items) { built_->expected_items = items; }
 
 void Kernel::launch(std::size_t items, const Arguments& arguments) {
     if (items == 0) return;
     Device::Context& context = *built_->context;
+    built_->build();
     try {
         for (cl_uint i = 0; i < built_->parameters.size(); ++i) {
             const auto found = arguments.values_.find(built_->parameters[i]);
@@ -91,7 +106,7 @@ void Kernel::launch(std::size_t items, const Arguments& arguments) {
         const std::size_t global = (items + local - 1) / local * local;
         // Drivers compile at a kernel's first launch, PoCL once more for large ranges: what such a
         // launch takes beyond running counts as compiling.
-        bool& compiled = built_->compiled[global < 65536];
+        bool& compiled = built_->compiled[global < few_items];
         if (!compiled) context.collect();
         const auto start = Clock::now();
         cl::Event event;

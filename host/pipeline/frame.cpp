@@ -129,7 +129,9 @@ void Frame::prepare() {
     if (plan_.clusters) {
         s.clustering.emplace(device_, s.scene, options_.clusters, plan_.tiles_per_batch);
         s.tables = s.clustering->tables();
-    } else if (sampler_.table == Table::power && !scene_.lights.empty()) {
+    }
+    device_.compile();
+    if (!plan_.clusters && sampler_.table == Table::power && !scene_.lights.empty()) {
         Stopwatch watch(result_.prepare_seconds, device_);
         const Mixture mixture = mixture_of(sampler_, scene_.lights);
         s.tables.set("power_cdf", PdfStage(device_, s.scene).of_powers(mixture));

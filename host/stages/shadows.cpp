@@ -19,7 +19,9 @@ ShadowStage::ShadowStage(Device& device, const DeviceScene& scene, std::size_t p
                            with_regions(scene.traversal, regions), "shadows")),
       rays_per_item_(scene.packets ? 16 : 1),
       origins_(device.allocate<float4>(packets)),
-      rays_(device.allocate<float>(64 * packets)) {}
+      rays_(device.allocate<float>(64 * packets)) {
+    trace_.expect(16 * packets / rays_per_item_);
+}
 
 Arguments ShadowStage::buffers() const {
     return Arguments().set("origins", origins_).set("rays", rays_);

@@ -7,6 +7,11 @@
 #ifndef MANYLIGHT_LIB_LANES_H
 #define MANYLIGHT_LIB_LANES_H
 
+// Functions of OpenCL's own take them by value, too; drivers inline these.
+#if defined(__clang__)
+#pragma clang diagnostic ignored "-Wpsabi"
+#endif
+
 // For functions that take vectors by value, which some registers are too small for.
 #define INLINE static inline __attribute__((always_inline))
 
