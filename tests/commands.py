@@ -232,6 +232,22 @@ class CommandTest(unittest.TestCase):
         self.assertTrue(run.stdout[:-1].isprintable(), run.stdout)
         self.assertEqual(json.loads(run.stdout)["images"][0]["file"], name)
 
+    def test_variants_of_materials(self):
+        self.write_lamp()
+        scene = json.loads((self.folder / "lamp.gltf").read_text())
+        scene["materials"].append({"name": "other"})
+        scene["extensions"]["KHR_materials_variants"] = {"variants": [{"name": "night"}]}
+        scene["meshes"][0]["primitives"][0]["extensions"] = {"KHR_materials_variants": {
+            "mappings": [{"material": 1, "variants": [0]}]}}
+        scene["cameras"] = [{"type": "perspective", "perspective": {"yfov": 1, "znear": 0.1}}]
+        scene["nodes"].append({"camera": 0, "translation": [0, 1, 4]})
+        scene["scenes"][0]["nodes"].append(2)
+        (self.folder / "lamp.gltf").write_text(json.dumps(scene))
+        arguments = ["inspect", "lamp.gltf", "--height", 16, "--pixel", "14,11"]
+        self.assertIn("paint", self.run_program(*arguments).stdout)
+        self.assertIn("other", self.run_program(*arguments, "--variant", "night").stdout)
+        self.refuse(*arguments, "--variant", "day", words=["--variant day", "'night'"])
+
     # What the machine does not take.
 
     def test_a_full_standard_output_is_an_error(self):
@@ -256,6 +272,7 @@ class CommandTest(unittest.TestCase):
                 self.refuse("render", self.cornell, "--height", 8, option, name,
                             words=[option, "too long"])
                 self.assertEqual(self.files(), [])
+        self.refuse("chart", self.cornell, "-o", 256 * "x", words=["--output", "too long"])
         name = 251 * "x" + ".png"  # the longest that there is
         self.run_program("render", self.cornell, "--height", 8, "-q", "-o", name)
         self.assertEqual(self.files(), [name])

@@ -122,12 +122,17 @@ TEST(gltf_mend, emission_above_1) {
     }
 }
 
-TEST(gltf_mend, empty_buffer_views) {
+TEST(gltf_mend, empty_buffers_and_views) {
     GltfTest file;
     file.document["bufferViews"].push_back({{"buffer", 0}, {"byteLength", 0}});
     const Scene scene = file.load();
     EXPECT_EQ(scene.triangle_count(), 1u);
-    expect_one_warning(scene, {"bufferViews[4].byteLength", "empty"});
+    expect_one_warning(scene, {"bufferViews[4].byteLength", "nothing is there"});
+    file.document["buffers"].push_back(
+        {{"byteLength", 0},
+         {"uri", std::filesystem::path(test::temporary("empty.bin")).filename().string()}});
+    std::ofstream(test::temporary("empty.bin")).flush();
+    expect_one_warning(file.load(), {"buffers[1].byteLength", "1 more", "nothing is there"});
     file.document["accessors"][0]["bufferView"] = 4;
     EXPECT_THROW((void)file.load(), InputError);
 }

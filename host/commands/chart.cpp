@@ -48,6 +48,7 @@ std::string view_options(const ChartArguments& arguments, const LoadedScene& loa
     if (scene.cull_back_faces) out += " --cull-back-faces";
     if (scene.storage != MeshStorage::automatic)
         out += scene.storage == MeshStorage::shared ? " --instances shared" : " --instances copied";
+    if (!scene.variant.empty()) out += " --variant " + quote(scene.variant);
     if (scene.lamp_scale != 1) out += fmt::format(" --lamp-scale {}", scene.lamp_scale);
     if (!scene.device.empty()) out += " --device " + quote(scene.device);
     if (scene.threads > 0) out += fmt::format(" --threads {}", scene.threads);

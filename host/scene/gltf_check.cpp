@@ -125,7 +125,7 @@ class Checker {
     }
 
     void buffer(const JsonValue& buffer, std::size_t i) {
-        if (buffer["byteLength"].integer() == 0) buffer["byteLength"].refuse("0 is no length");
+        (void)buffer["byteLength"].integer();
         if (!has_data(file_, i)) return;
         stored_ += buffer["byteLength"].integer();
         if (buffer.has("uri")) uri(buffer["uri"], true);

@@ -33,7 +33,7 @@ class Mender {
         make_rotations_unit();
         note_bright_emission();
         note_textures_without_image();
-        note_empty_views();
+        note_empty_data();
         hide_nodes();
         if (!variant.empty()) choose_variant(variant);
         if (json_.contains("materials"))
@@ -131,11 +131,12 @@ class Mender {
         });
     }
 
-    void note_empty_views() {
-        for_each("bufferViews", [&](const json& view, const std::string& place) {
-            if (view["byteLength"] == 0)
-                file_.notes.add(place + ".byteLength", "is 0; the view is empty");
-        });
+    void note_empty_data() {
+        for (const char* kind : {"buffers", "bufferViews"})
+            for_each(kind, [&](const json& bytes, const std::string& place) {
+                if (bytes["byteLength"] == 0)
+                    file_.notes.add(place + ".byteLength", "is 0; nothing is there");
+            });
     }
 
     template <class Function>
