@@ -192,8 +192,10 @@ class CommandTest(unittest.TestCase):
         scene["extensionsUsed"].append("EXT" + evil)
         name = "evil\x1b[31m\nerror: fake.gltf"
         (self.folder / name).write_text(json.dumps(scene))
-        runs = [self.run_program("render", name, "--height", 16, "--top-lights", 2),
-                self.run_program("inspect", name, "--height", 16, "--pixel", "14,11"),
+        runs = [self.run_program("render", name, "--height", 16, "--top-lights", 2,
+                                 "--stats", "s.json"),
+                self.run_program("inspect", name, "--height", 16, "--pixel", "14,11",
+                                 "--json", "i.json"),
                 self.run_program("verify", name, "--width", 16),
                 self.run_program("render", name, "--camera", evil, code=2),
                 self.run_program("render", "no" + name, code=2),
@@ -211,6 +213,10 @@ class CommandTest(unittest.TestCase):
                 if run.returncode != 0:
                     self.assertEqual(run.stderr.count("\nerror: ") + run.stderr.startswith("error: "), 1)
                     self.assertTrue(run.stderr.splitlines()[-1].startswith("error: "), run.stderr)
+        for report in ("s.json", "i.json"):
+            text = (self.folder / report).read_text()
+            self.assertFalse([c for c in text if c != "\n" and not c.isprintable()], text)
+            self.assertIn("lamp" + json.dumps(evil)[1:-1], text)
         words = ["lamp\\x1b[31m\\x07\\nerror: fake\\x7f\\u009b2J\\u202e", "eye\\x1b[31m"]
         for word in words:
             self.assertIn(word, runs[0].stdout)

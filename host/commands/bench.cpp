@@ -279,7 +279,7 @@ void bench_stages(const LoadedScene& loaded, const Device& device, const BenchAr
 
 void write_json(const std::string& path, const json& out) {
     if (path.empty()) return;
-    const std::string text = out.dump(2, ' ', false, json::error_handler_t::replace) + "\n";
+    const std::string text = out.dump(2, ' ', true, json::error_handler_t::replace) + "\n";
     write_file(path, std::as_bytes(std::span(text)));
     say("\nwrote {}\n", path);
 }

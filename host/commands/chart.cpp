@@ -115,7 +115,7 @@ void write_chart(const std::string& output, const Chart& chart, const json& fact
                    {"manylight:relmse", static_cast<float>(error.relmse)}});
         write_text(folder / "report.html", report);
         write_text(folder / "chart.json",
-                   facts.dump(1, ' ', false, json::error_handler_t::replace) + "\n");
+                   facts.dump(1, ' ', true, json::error_handler_t::replace) + "\n");
     });
 }
 

@@ -353,7 +353,7 @@ int run_inspect(const InspectArguments& arguments) {
     write_png(file, draw_pixel_picture(result.image, picture), 1, {});
     say("\nwrote {}\n", file);
     if (!arguments.json.empty()) {
-        const std::string text = out.dump(2, ' ', false, json::error_handler_t::replace) + "\n";
+        const std::string text = out.dump(2, ' ', true, json::error_handler_t::replace) + "\n";
         write_file(arguments.json, std::as_bytes(std::span(text)));
         say("wrote {}\n", arguments.json);
     }

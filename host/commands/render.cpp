@@ -189,7 +189,7 @@ void write_files(const RenderArguments& arguments, const std::vector<std::string
         write_png(arguments.cluster_map, draw_cluster_map(result.image, exposure, result.aovs), 1,
                   metadata);
     if (!arguments.stats.empty()) {
-        const std::string text = stats.dump(2, ' ', false, json::error_handler_t::replace) + "\n";
+        const std::string text = stats.dump(2, ' ', true, json::error_handler_t::replace) + "\n";
         write_file(arguments.stats, std::as_bytes(std::span(text)));
     }
 }

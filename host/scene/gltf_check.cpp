@@ -366,8 +366,10 @@ class Checker {
         if (material.has("alphaMode"))
             (void)material["alphaMode"].one_of({"OPAQUE", "MASK", "BLEND"});
         if (material.has("alphaCutoff")) (void)material["alphaCutoff"].at_least_zero();
-        if (!material.has("extensions")) return;
-        const JsonValue extensions = material["extensions"].object();
+        if (material.has("extensions")) material_extensions(material["extensions"].object());
+    }
+
+    void material_extensions(const JsonValue& extensions) {
         if (extensions.has("KHR_materials_emissive_strength")) {
             const JsonValue strength = extensions["KHR_materials_emissive_strength"].object();
             if (strength.has("emissiveStrength"))
