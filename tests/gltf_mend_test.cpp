@@ -137,13 +137,19 @@ TEST(gltf_mend, empty_buffers_and_views) {
     EXPECT_THROW((void)file.load(), InputError);
 }
 
-// A chunk's length says where the next one starts, whatever it is.
+// A chunk's length says where the next one starts, whatever it is, or where its padding does.
 TEST(gltf_mend, chunks_that_are_not_padded) {
     GltfTest file;
     file.document["buffers"][0].erase("uri");
     std::ifstream stream(test::temporary("data.bin"), std::ios::binary);
     std::string data((std::istreambuf_iterator<char>(stream)), {});
-    for (const std::size_t rest : {0, 1, 2, 3}) {
+    for (const auto& [rest, pads] : {std::pair<std::size_t, bool>{0, false},
+                                     {1, false},
+                                     {2, false},
+                                     {3, false},
+                                     {1, true},
+                                     {2, true},
+                                     {3, true}}) {
         std::string text = file.document.dump();
         text.resize((text.size() + 3) / 4 * 4 + rest, ' ');
         const std::string binary = data + std::string(rest, '\0');
@@ -153,13 +159,14 @@ TEST(gltf_mend, chunks_that_are_not_padded) {
             glb.append(reinterpret_cast<const char*>(&v), 4);
         };
         add(2);
-        add(28 + text.size() + binary.size());
+        const std::string padding(pads ? 4 - rest : 0, ' ');
+        add(28 + text.size() + binary.size() + 2 * padding.size());
         add(text.size());
         add(0x4e4f534a);
-        glb += text;
+        glb += text + padding;
         add(binary.size());
         add(0x004e4942);
-        glb += binary;
+        glb += binary + padding;
         const std::string path = test::temporary("unpadded.glb");
         std::ofstream(path, std::ios::binary) << glb;
         const Scene scene = load_scene(path);

@@ -38,9 +38,25 @@ Chunk chunk_at(const std::string& path, const std::vector<unsigned char>& bytes,
     return {word(bytes, offset + 4), std::span(bytes).subspan(offset + 8, length)};
 }
 
+constexpr std::uint32_t json_type = 0x4e4f534a;
+constexpr std::uint32_t binary_type = 0x004e4942;
+
+// Where the chunk starts that follows one of `length` bytes at `begin`: right behind it, or behind
+// padding that its length does not count.
+std::size_t next_chunk(const std::vector<unsigned char>& bytes, std::size_t begin,
+                       std::size_t length) {
+    const std::size_t end = begin + length;
+    const std::size_t padded = begin + (length + 3) / 4 * 4;
+    const auto is_binary = [&](std::size_t at) {
+        return at + 8 <= bytes.size() && word(bytes, at + 4) == binary_type;
+    };
+    const bool is_last = bytes.size() == padded;
+    return is_last || (!is_binary(end) && is_binary(padded)) ? padded : end;
+}
+
 // The JSON chunk of a .glb file; checks the header and every chunk, and keeps the BIN chunk.
 std::string_view find_chunks(const std::vector<unsigned char>& bytes, GltfFile& file) {
-    constexpr std::uint32_t types[] = {0x4e4f534a, 0x004e4942};
+    constexpr std::uint32_t types[] = {json_type, binary_type};
     constexpr const char* names[] = {"JSON", "BIN"};
     if (bytes.size() < 20)
         throw InputError("{}: glb header: the file has {} bytes, fewer than 20", file.path,
@@ -63,7 +79,7 @@ std::string_view find_chunks(const std::vector<unsigned char>& bytes, GltfFile& 
         if (number == 0)
             json = {reinterpret_cast<const char*>(chunk.bytes.data()), chunk.bytes.size()};
         if (number == 1) file.binary.emplace(chunk.bytes.begin(), chunk.bytes.end());
-        offset += 8 + chunk.bytes.size();
+        offset = next_chunk(bytes, offset + 8, chunk.bytes.size());
     }
     return json;
 }
