@@ -5,6 +5,7 @@ usage: commands.py MANYLIGHT SCENES
 """
 import base64
 import json
+import os
 import pathlib
 import signal
 import struct
@@ -175,6 +176,117 @@ class CommandTest(unittest.TestCase):
         self.assertIn("warning: dark.gltf: extension KHR_lights_ies", run.stderr)
         self.assertIn("no lights", run.stderr)
         self.assertIn("dark.png", self.files())
+
+    # What names hold that files or users make up.
+
+    def test_names_do_not_command_the_terminal(self):
+        evil = "\x1b[31m\x07\nerror: fake\x7f\x9b2J\u202e"
+        self.write_lamp()
+        scene = json.loads((self.folder / "lamp.gltf").read_text())
+        scene["nodes"][1]["name"] = "lamp" + evil
+        scene["materials"][0]["name"] = "paint" + evil
+        scene["cameras"] = [{"type": "perspective", "name": "eye" + evil,
+                             "perspective": {"yfov": 1, "znear": 0.1}}]
+        scene["nodes"].append({"camera": 0, "translation": [0, 1, 4]})
+        scene["scenes"][0]["nodes"].append(2)
+        scene["extensionsUsed"].append("EXT" + evil)
+        name = "evil\x1b[31m\nerror: fake.gltf"
+        (self.folder / name).write_text(json.dumps(scene))
+        runs = [self.run_program("render", name, "--height", 16, "--top-lights", 2,
+                                 "--stats", "s.json"),
+                self.run_program("inspect", name, "--height", 16, "--pixel", "14,11",
+                                 "--json", "i.json"),
+                self.run_program("verify", name, "--width", 16),
+                self.run_program("render", name, "--camera", evil, code=2),
+                self.run_program("render", "no" + name, code=2),
+                self.run_program("compare", name, name, code=2),
+                self.run_program(evil, code=2)]
+        scene["extensionsRequired"] = ["EXT" + evil]
+        (self.folder / name).write_text(json.dumps(scene))
+        runs.append(self.run_program("render", name, code=2))
+        for run in runs:
+            with self.subTest(arguments=run.args):
+                for text in (run.stdout, run.stderr):
+                    self.assertFalse([c for c in text if c != "\n" and not c.isprintable()], text)
+                    self.assertFalse([line for line in text.splitlines()
+                                      if line.startswith("error: fake")], text)
+                if run.returncode != 0:
+                    self.assertEqual(run.stderr.count("\nerror: ") + run.stderr.startswith("error: "), 1)
+                    self.assertTrue(run.stderr.splitlines()[-1].startswith("error: "), run.stderr)
+        for report in ("s.json", "i.json"):
+            text = (self.folder / report).read_text()
+            self.assertFalse([c for c in text if c != "\n" and not c.isprintable()], text)
+            self.assertIn("lamp" + json.dumps(evil)[1:-1], text)
+        words = ["lamp\\x1b[31m\\x07\\nerror: fake\\x7f\\u009b2J\\u202e", "eye\\x1b[31m"]
+        for word in words:
+            self.assertIn(word, runs[0].stdout)
+        self.assertIn("paint\\x1b[31m", runs[1].stdout)
+        self.assertIn("extension EXT\\x1b[31m\\x07\\nerror", runs[0].stderr)
+
+    def test_broken_unicode_is_shown_as_bytes(self):
+        run = subprocess.run([PROGRAM, "render", b"a\xff\xc0\xaf\xed\xa0\x80\xe2\x82\xc3\xa9.glb"],
+                             capture_output=True, cwd=self.folder)
+        self.assertEqual(run.returncode, 2)
+        self.assertEqual(run.stderr, b"error: a\\xff\\xc0\\xaf\\xed\\xa0\\x80\\xe2\\x82\xc3\xa9.glb: "
+                                     b"no such file\n")
+
+    def test_json_for_programs_holds_no_raw_controls(self):
+        self.run_program("render", self.cornell, "--height", 8, "-q", "-o", "a.exr")
+        name = "\x1b[31m\x9b\u202e.exr"
+        (self.folder / name).write_bytes((self.folder / "a.exr").read_bytes())
+        run = self.run_program("compare", name, "a.exr", "--ref", "a.exr", "--json")
+        self.assertTrue(run.stdout[:-1].isprintable(), run.stdout)
+        self.assertEqual(json.loads(run.stdout)["images"][0]["file"], name)
+
+    def test_variants_of_materials(self):
+        self.write_lamp()
+        scene = json.loads((self.folder / "lamp.gltf").read_text())
+        scene["materials"].append({"name": "other"})
+        scene["extensions"]["KHR_materials_variants"] = {"variants": [{"name": "night"}]}
+        scene["meshes"][0]["primitives"][0]["extensions"] = {"KHR_materials_variants": {
+            "mappings": [{"material": 1, "variants": [0]}]}}
+        scene["cameras"] = [{"type": "perspective", "perspective": {"yfov": 1, "znear": 0.1}}]
+        scene["nodes"].append({"camera": 0, "translation": [0, 1, 4]})
+        scene["scenes"][0]["nodes"].append(2)
+        (self.folder / "lamp.gltf").write_text(json.dumps(scene))
+        arguments = ["inspect", "lamp.gltf", "--height", 16, "--pixel", "14,11"]
+        self.assertIn("paint", self.run_program(*arguments).stdout)
+        self.assertIn("other", self.run_program(*arguments, "--variant", "night").stdout)
+        self.refuse(*arguments, "--variant", "day", words=["--variant day", "'night'"])
+
+    # What the machine does not take.
+
+    def test_a_full_standard_output_is_an_error(self):
+        for arguments in (["render", self.cornell, "--height", "8"], ["--help"], ["devices"],
+                          ["render", "--help"], ["scene", "--list"], ["--version"]):
+            with self.subTest(arguments=arguments), open("/dev/full", "w") as full:
+                run = subprocess.run([PROGRAM, *arguments], stdout=full, stderr=subprocess.PIPE,
+                                     text=True, cwd=self.folder, timeout=120)
+                self.assertEqual(run.returncode, 1)
+                self.assertEqual(len(run.stderr.splitlines()), 1, run.stderr)
+                self.assertTrue(run.stderr.startswith("error: standard output cannot be written"))
+
+    def test_a_full_standard_error_keeps_the_status(self):
+        with open("/dev/full", "w") as full:
+            run = subprocess.run([PROGRAM, "render", "none.glb"], stderr=full, cwd=self.folder)
+        self.assertEqual(run.returncode, 2)
+
+    def test_names_too_long(self):
+        for option, name in (("-o", 252 * "x" + ".exr"), ("-o", 2048 * "./" + "a.exr"),
+                             ("--stats", 256 * "s"), ("--checkpoint", 256 * "c")):
+            with self.subTest(option=option, name=name[-10:]):
+                self.refuse("render", self.cornell, "--height", 8, option, name,
+                            words=[option, "too long"])
+                self.assertEqual(self.files(), [])
+        self.refuse("chart", self.cornell, "-o", 256 * "x", words=["--output", "too long"])
+        name = 251 * "x" + ".png"  # the longest that there is
+        self.run_program("render", self.cornell, "--height", 8, "-q", "-o", name)
+        self.assertEqual(self.files(), [name])
+
+    def test_an_empty_cache_folder_is_none(self):
+        run = subprocess.run([PROGRAM, "devices"], capture_output=True, text=True,
+                             env={**os.environ, "POCL_CACHE_DIR": ""})
+        self.assertEqual(run.returncode, 0, run.stderr)
 
     # What is refused.
 

@@ -9,104 +9,22 @@
 #include <cmath>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
 #include <glm/gtc/constants.hpp>
 
 #include "error.hpp"
-#include "support.hpp"
+#include "gltf_file.hpp"
 
 namespace manylight {
 namespace {
 
 using nlohmann::json;
-
-// A .gltf file with its buffer beside it: one triangle (0 0 0, 1 0 0, 0 1 0), a square of four
-// vertices as a strip, and indices of every type.
-class GltfTest {
-  public:
-    json document;
-
-    GltfTest() {
-        const float positions[] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0};
-        const std::uint8_t bytes[] = {0, 1, 2, 0};
-        const std::uint16_t shorts[] = {0, 1, 2, 0};
-        const std::uint32_t words[] = {2, 1, 0};
-        std::string data;
-        const auto add = [&data](const auto& array) {
-            data.append(reinterpret_cast<const char*>(array), sizeof(array));
-        };
-        add(positions);
-        add(bytes);
-        add(shorts);
-        add(words);
-        std::ofstream(test::temporary("data.bin"), std::ios::binary) << data;
-        document = {
-            {"asset", {{"version", "2.0"}}},
-            {"scene", 0},
-            {"scenes", {{{"nodes", {0}}}}},
-            {"nodes", {{{"mesh", 0}}}},
-            {"meshes", {{{"primitives", {{{"attributes", {{"POSITION", 0}}}}}}}}},
-            {"accessors",
-             {{{"bufferView", 0}, {"componentType", 5126}, {"count", 3}, {"type", "VEC3"}},
-              {{"bufferView", 0}, {"componentType", 5126}, {"count", 4}, {"type", "VEC3"}},
-              {{"bufferView", 1}, {"componentType", 5121}, {"count", 3}, {"type", "SCALAR"}},
-              {{"bufferView", 2}, {"componentType", 5123}, {"count", 3}, {"type", "SCALAR"}},
-              {{"bufferView", 3}, {"componentType", 5125}, {"count", 3}, {"type", "SCALAR"}}}},
-            {"bufferViews",
-             {{{"buffer", 0}, {"byteLength", 48}},
-              {{"buffer", 0}, {"byteOffset", 48}, {"byteLength", 4}},
-              {{"buffer", 0}, {"byteOffset", 52}, {"byteLength", 8}},
-              {{"buffer", 0}, {"byteOffset", 60}, {"byteLength", 12}}}},
-            {"buffers", {{{"byteLength", 72}, {"uri", "data.bin"}}}},
-        };
-    }
-
-    // Appends an accessor with a buffer of its own; returns its index.
-    template <class T>
-    int add(const std::vector<T>& values, int component, const char* type, std::size_t count) {
-        const std::string name = fmt::format("more{}.bin", document["buffers"].size());
-        const std::size_t bytes = values.size() * sizeof(T);
-        std::ofstream(test::temporary(name), std::ios::binary)
-            .write(reinterpret_cast<const char*>(values.data()), static_cast<long>(bytes));
-        document["bufferViews"].push_back(
-            {{"buffer", document["buffers"].size()}, {"byteLength", bytes}});
-        document["buffers"].push_back(
-            {{"byteLength", bytes},
-             {"uri", std::filesystem::path(test::temporary(name)).filename().string()}});
-        document["accessors"].push_back({{"bufferView", document["bufferViews"].size() - 1},
-                                         {"componentType", component},
-                                         {"count", count},
-                                         {"type", type}});
-        return static_cast<int>(document["accessors"].size()) - 1;
-    }
-    int add_floats(const std::vector<float>& values, const char* type, std::size_t count) {
-        return add(values, 5126, type, count);
-    }
-
-    json& primitive() { return document["meshes"][0]["primitives"][0]; }
-
-    [[nodiscard]] Scene load(std::optional<double> seconds = {}) const {
-        return load(LoadOptions{.seconds = seconds});
-    }
-    [[nodiscard]] Scene load(const LoadOptions& options) const {
-        const std::string path = test::temporary("test.gltf");
-        std::ofstream(path) << document;
-        return load_scene(path, options);
-    }
-};
-
-std::vector<glm::vec3> triangle(const Scene& scene, std::size_t t) {
-    return {scene.vertices[scene.indices[3 * t]], scene.vertices[scene.indices[3 * t + 1]],
-            scene.vertices[scene.indices[3 * t + 2]]};
-}
+using test::expect_near;
+using test::GltfTest;
+using test::triangle;
 
 glm::vec3 face_normal(const Scene& scene, std::size_t t) {
     const auto v = triangle(scene, t);
     return glm::normalize(glm::cross(v[1] - v[0], v[2] - v[0]));
-}
-
-void expect_near(glm::vec3 found, glm::vec3 expected) {
-    for (int i = 0; i < 3; ++i) EXPECT_NEAR(found[i], expected[i], 1e-5);
 }
 
 }  // namespace
@@ -356,6 +274,36 @@ TEST(gltf, embedded_data) {
     expect_near(triangle(scene, 0)[2], {0, 1, 0});
 }
 
+// Names are decoded once; a % that codes nothing stands for itself, as does a plus. Links within
+// the folder are followed, and a file may be longer than its buffer.
+TEST(gltf, names_of_files) {
+    namespace fs = std::filesystem;
+    GltfTest file;
+    const fs::path folder = test::temporary("folder");
+    fs::create_directory(folder);
+    const auto name = [&](const std::string& text) {
+        file.document["buffers"][0]["uri"] = folder.filename().string() + "/" + text;
+    };
+    const fs::path data = test::temporary("data.bin");
+    for (const auto& [uri, written] :
+         {std::pair{"a%20b%25.bin", "a b%.bin"}, std::pair{"100%.bin", "100%.bin"},
+          std::pair{"%zz+%2B.bin", "%zz++.bin"}, std::pair{"%252e.bin", "%2e.bin"},
+          std::pair{"%C3%A9.bin", "\xc3\xa9.bin"}, std::pair{"./x/y.bin", "x/y.bin"}}) {
+        fs::create_directories((folder / written).parent_path());
+        fs::copy_file(data, folder / written, fs::copy_options::overwrite_existing);
+        std::ofstream(folder / written, std::ios::app) << "more than byteLength says";
+        name(uri);
+        const Scene scene = file.load();
+        ASSERT_EQ(scene.triangle_count(), 1u) << uri;
+        ASSERT_EQ(scene.files.size(), 1u);
+        EXPECT_TRUE(fs::equivalent(scene.files[0], folder / written));
+    }
+    fs::create_symlink("x/y.bin", folder / "link.bin");
+    name("link.bin");
+    EXPECT_EQ(file.load().triangle_count(), 1u);
+    fs::remove_all(folder);
+}
+
 // Positions with other data between them.
 TEST(gltf, strided_vertices) {
     GltfTest file;
@@ -500,18 +448,22 @@ TEST(gltf, draco) {
     }
 }
 
-// EXT_meshopt_compression, written by the library's encoder: positions, indices, and normals as
-// octahedra; the buffer that they would fill has no data.
+// EXT_meshopt_compression, and KHR's by the same layout, written by the library's encoder:
+// positions, indices, and normals as octahedra; the buffer that they would fill has no data,
+// whether it says so or not.
 TEST(gltf, compressed_buffer_views) {
     const std::vector<float> positions = {0, 0, 0, 0, 2, 0, 0, 0, 0, 3, 0, 0};  // VEC3 and a gap
     const std::vector<unsigned> corners = {0, 1, 2};
     const float normals[] = {0, 0, 1, 0, 0.6f, 0, 0.8f, 0, 0, -1, 0, 0};
     std::vector<std::int8_t> octahedra(12);
     meshopt_encodeFilterOct(octahedra.data(), 3, 4, 8, normals);
-    for (const bool is_binary_indices : {false, true}) {
+    for (const auto& [is_binary_indices, extension, says_so] :
+         {std::tuple{false, "EXT_meshopt_compression", true},
+          std::tuple{true, "EXT_meshopt_compression", false},
+          std::tuple{true, "KHR_meshopt_compression", true}}) {
         GltfTest file;
-        file.document["extensionsUsed"] = {"EXT_meshopt_compression", "KHR_mesh_quantization"};
-        file.document["extensionsRequired"] = {"EXT_meshopt_compression"};
+        file.document["extensionsUsed"] = {extension, "KHR_mesh_quantization"};
+        file.document["extensionsRequired"] = {extension};
         const auto add = [&](const void* data, std::size_t stride, const char* mode, json more,
                              json accessor) {
             const bool vertices = std::string(mode) == "ATTRIBUTES";
@@ -527,13 +479,12 @@ TEST(gltf, compressed_buffer_views) {
                          {"byteStride", stride},
                          {"count", 3},
                          {"mode", mode}});
-            file.document["buffers"].push_back(
-                {{"byteLength", 3 * stride},
-                 {"extensions", {{"EXT_meshopt_compression", {{"fallback", true}}}}}});
-            file.document["bufferViews"].back() = {
-                {"buffer", file.document["buffers"].size() - 1},
-                {"byteLength", 3 * stride},
-                {"extensions", {{"EXT_meshopt_compression", more}}}};
+            file.document["buffers"].push_back({{"byteLength", 3 * stride}});
+            if (says_so)
+                file.document["buffers"].back()["extensions"][extension]["fallback"] = true;
+            file.document["bufferViews"].back() = {{"buffer", file.document["buffers"].size() - 1},
+                                                   {"byteLength", 3 * stride},
+                                                   {"extensions", {{extension, more}}}};
             if (vertices) file.document["bufferViews"].back()["byteStride"] = stride;
             accessor["bufferView"] = file.document["bufferViews"].size() - 1;
             accessor["count"] = 3;

@@ -199,11 +199,14 @@ CHANGES = {
     "asset missing": (put(["asset"], ...), ["'asset' is missing"]),
     "asset no object": (put(["asset"], 3), ["asset", "3", "not an object"]),
     "version missing": (put(["asset", "version"], ...), ["asset", "'version'"]),
-    "version 1": (put(["asset", "version"], "1.0"), ["asset.version", "1.0"]),
+    "version 1": (put(["asset", "version"], "1.0"), ["asset.version", "1.0", "gltf-pipeline -i"]),
+    "version 3": (put(["asset", "version"], "3.0"), ["asset.version", "3.0"]),
     "version a number": (put(["asset", "version"], 2), ["asset.version", "not a string"]),
     "minimum version": (put(["asset", "minVersion"], "2.9"), ["asset.minVersion", "2.9"]),
-    "unknown required extension": (put(["extensionsRequired"], ["EXT_structural_metadata"]),
-                                   ["extensionsRequired[0]", "EXT_structural_metadata"]),
+    "unknown required extension": (put(["extensionsRequired"], ["VENDOR_voxels"]),
+                                   ["extensionsRequired[0]", "VENDOR_voxels"]),
+    "required KTX2": (put(["extensionsRequired"], ["KHR_texture_basisu"]),
+                      ["extensionsRequired[0]", "KTX2", "gltf-transform ktxdecompress"]),
     "required extension no string": (put(["extensionsRequired"], [7]), ["extensionsRequired[0]"]),
     "extensions used no array": (put(["extensionsUsed"], {}), ["extensionsUsed", "not an array"]),
     "nodes no array": (put(["nodes"], {"0": {}}), ["nodes", "not an array"]),
@@ -212,8 +215,6 @@ CHANGES = {
     "scene negative": (put(["scene"], -1), ["scene", "-1"]),
     "scene a fraction": (put(["scene"], 0.5), ["scene", "0.5"]),
     "scene node beyond": (put(["scenes", 0, "nodes"], [9]), ["scenes[0].nodes[0]", "9"]),
-    "scene node twice": (put(["scenes", 0, "nodes"], [0, 0]), ["scenes[0].nodes[1]", "twice"]),
-    "scene node no root": (put(["scenes", 0, "nodes"], [0, 3]), ["scenes[0].nodes[1]", "no root"]),
     "no scene": (put(["scenes"], ...), ["scene"]),
     "emitter points": (put(["scenes", 0, "extras"], {"emitter_points": -4}), ["emitter_points", "-4"]),
     "emitter points huge": (put(["scenes", 0, "extras"], {"emitter_points": 10**12}),
@@ -268,7 +269,16 @@ CHANGES = {
     "base color above 1": (put(PBR + ["baseColorFactor"], [1, 2, 1, 1]), ["baseColorFactor[1]", "2"]),
     "metallic above 1": (put(PBR + ["metallicFactor"], 1.5), ["metallicFactor", "1.5"]),
     "roughness negative": (put(PBR + ["roughnessFactor"], -0.1), ["roughnessFactor", "-0.1"]),
-    "emissive above 1": (put(MATERIAL + ["emissiveFactor"], [0, 0, 3]), ["emissiveFactor[2]", "3"]),
+    "emissive negative": (put(MATERIAL + ["emissiveFactor"], [0, 0, -3]), ["emissiveFactor[2]", "-3"]),
+    "glossiness above 1": (put(MATERIAL + ["extensions", "KHR_materials_pbrSpecularGlossiness"],
+                               {"glossinessFactor": 1.5}), ["glossinessFactor", "1.5"]),
+    "variant beyond": (lambda d: (put(["extensions", "KHR_materials_variants"], {
+        "variants": [{"name": "a"}]})(d), put(PRIMITIVE + ["extensions"], {"KHR_materials_variants": {
+            "mappings": [{"material": 0, "variants": [1]}]}})(d)), ["mappings[0].variants[0]", "no variant 1"]),
+    "variant material beyond": (put(PRIMITIVE + ["extensions"], {"KHR_materials_variants": {
+        "mappings": [{"material": 9, "variants": []}]}}), ["mappings[0].material", "9"]),
+    "visibility a number": (put(["nodes", 0, "extensions"], {"KHR_node_visibility": {"visible": 0}}),
+                            ["nodes[0].extensions.KHR_node_visibility.visible", "0"]),
     "emissive strength negative": (put(MATERIAL + ["extensions", "KHR_materials_emissive_strength",
                                                    "emissiveStrength"], -1), ["emissiveStrength", "-1"]),
     "specular above 1": (put(MATERIAL + ["extensions", "KHR_materials_specular", "specularFactor"], 2),
@@ -280,8 +290,6 @@ CHANGES = {
     "texCoord beyond": (put(PBR + ["baseColorTexture", "texCoord"], 16),
                         ["baseColorTexture.texCoord", "16"]),
     "texCoord text": (put(PBR + ["baseColorTexture", "texCoord"], "0"), ["texCoord", '"0"']),
-    "texCoord missing": (put(PBR + ["baseColorTexture", "texCoord"], 1),
-                         ["meshes[0].primitives[0]", "material 0", "TEXCOORD_1"]),
     "coordinates scalar": (put(PRIMITIVE + ["attributes", "TEXCOORD_0"], 1),
                            ["attributes.TEXCOORD_0", "accessor 1", "VEC2"]),
     "coordinates infinite": (lambda d: (put(PRIMITIVE + ["attributes", "TEXCOORD_0"], 3)(d),
@@ -314,7 +322,6 @@ CHANGES = {
     "specular colour negative": (put(MATERIAL + ["extensions", "KHR_materials_specular"],
                                      {"specularColorFactor": [1, -1, 1]}),
                                  ["specularColorFactor[1]", "-1"]),
-    "image missing": (put(["images", 0, "uri"], "none.png"), ["images[0].uri", "none.png"]),
     "image a folder": (put(["images", 0, "uri"], "."), ["images[0].uri"]),
     "image empty": (put(["images", 0, "uri"], "empty.png"), ["images[0]", "0 bytes"]),
     "image text": (put(["images", 0, "uri"], "text.png"), ["images[0]", "no PNG"]),
@@ -329,7 +336,7 @@ CHANGES = {
     "image in text broken": (put(["images", 0, "uri"], "data:image/png;base64,iVBORw0KGgo="),
                              ["images[0]", "decoded"]),
     "image of a view": (put(["images", 0], {"bufferView": 0}), ["images[0]", "48 bytes"]),
-    "image without data": (put(["images", 0], {}), ["images[0]"]),
+    "image of a file and a view": (put(["images", 0, "bufferView"], 0), ["images[0]", "both"]),
     "image outside": (put(["images", 0, "uri"], "../../secret.png"), ["images[0].uri", "outside"]),
     "meshes of numbers": (put(["meshes"], [1]), ["meshes[0]", "not an object"]),
     "mesh without primitives": (put(["meshes", 0, "primitives"], []), ["meshes[0].primitives"]),
@@ -416,6 +423,11 @@ CHANGES = {
         "values": {"bufferView": 0}}), ["byteOffset", str(2**31), "is more than"]),
     "a file twice": (lambda d: d.update(buffers=d["buffers"] + 2 * [
         {"byteLength": 4, "uri": "texture.png"}]), ["buffers[2].uri", "texture.png"]),
+    "a file twice by two names": (lambda d: d.update(buffers=d["buffers"] + [
+        {"byteLength": 4, "uri": "texture.png"}, {"byteLength": 4, "uri": "./%74exture.png"}]),
+                                  ["buffers[2].uri", "another buffer"]),
+    "buffer data of no base64": (put(BUFFER + ["uri"], "data:application/octet-stream;base64,AA*A"),
+                                 ["buffers[0].uri", "base64"]),
     "morph targets beyond all time": (lambda d: (d["accessors"].append({
         "componentType": 5126, "type": "VEC3", "count": 1 << 24}), put(POSITION, d["accessors"][-1])(d),
         put(PRIMITIVE + ["targets"], [{"POSITION": 0}] * 1000)(d)), ["morph targets", "steps"]),
@@ -423,7 +435,7 @@ CHANGES = {
     "flat copies beyond memory": (many_instances(1, 1 << 20, "SCALE"), ["triangles", "GiB of memory"]),
     "accessor min of two": (put(POSITION + ["min"], [0, 0]), ["accessors[0].min", "2"]),
     "view buffer beyond": (put(VIEW + ["buffer"], 1), ["bufferViews[0].buffer", "1"]),
-    "view length 0": (put(VIEW + ["byteLength"], 0), ["bufferViews[0].byteLength"]),
+    "view length 0": (put(VIEW + ["byteLength"], 0), ["bufferView 0 of 0 bytes"]),
     "view length beyond": (put(VIEW + ["byteLength"], 61), ["bufferViews[0]", "61"]),
     "view length 2^64 - 1": (put(VIEW + ["byteLength"], 2**64 - 1), ["bufferViews[0]", str(2**64 - 1)]),
     "view offset overflows": (put(VIEW + ["byteOffset"], 2**64 - 8), ["bufferViews[0]", str(2**64 - 8)]),
@@ -434,11 +446,33 @@ CHANGES = {
     "buffer length missing": (put(BUFFER + ["byteLength"], ...), ["buffers[0]", "'byteLength'"]),
     "buffer shorter than said": (put(BUFFER + ["byteLength"], 1000), ["uffer"]),
     "buffer 2^62 bytes": (put(BUFFER + ["byteLength"], 2**62), ["uffer"]),
-    "buffer without uri": (put(BUFFER + ["uri"], ...), ["buffers[0]", "'uri'"]),
+    "buffer without uri": (put(BUFFER + ["uri"], ...), ["bufferViews[0]", "buffer 0", "no data"]),
     "buffer uri absolute": (put(BUFFER + ["uri"], "/etc/passwd"), ["buffers[0].uri", "outside"]),
     "buffer uri upwards": (put(BUFFER + ["uri"], "../data.bin"), ["buffers[0].uri", "outside"]),
     "buffer uri upwards, encoded": (put(BUFFER + ["uri"], "%2e%2e/data.bin"), ["buffers[0].uri", "outside"]),
     "buffer uri by network": (put(BUFFER + ["uri"], "http://localhost/data.bin"), ["buffers[0].uri"]),
+    "buffer uri down and up": (put(BUFFER + ["uri"], "folder/../../data.bin"), ["buffers[0].uri", "outside"]),
+    "buffer uri up and in again": (put(BUFFER + ["uri"], "../scenes/data.bin"), ["buffers[0].uri", "outside"]),
+    "buffer uri that ends early": (put(BUFFER + ["uri"], "../data.bin%zz/../scenes/texture.png"),
+                                   ["buffers[0].uri", "outside"]),
+    "buffer uri of a NUL": (put(BUFFER + ["uri"], "texture.png%00.bin"), ["buffers[0].uri", "control"]),
+    "buffer uri of a raw NUL": (put(BUFFER + ["uri"], "texture.png\0.bin"), ["buffers[0].uri", "control"]),
+    "buffer uri of a line break": (put(BUFFER + ["uri"], "texture%0a.png"), ["buffers[0].uri", "control"]),
+    "buffer uri of a drive": (put(BUFFER + ["uri"], "C:/data.bin"), ["buffers[0].uri", "colon"]),
+    "buffer uri of a drive, encoded": (put(BUFFER + ["uri"], "c%3A/data.bin"), ["buffers[0].uri", "colon"]),
+    "buffer uri by backslashes": (put(BUFFER + ["uri"], "..\\data.bin"), ["buffers[0].uri", "backslash"]),
+    "buffer uri by backslashes, encoded": (put(BUFFER + ["uri"], "..%5cdata.bin"), ["buffers[0].uri", "backslash"]),
+    "buffer uri absolute, encoded": (put(BUFFER + ["uri"], "%2fetc%2fpasswd"), ["buffers[0].uri", "outside"]),
+    "buffer uri encoded twice": (put(BUFFER + ["uri"], "%252e%252e/data.bin"), ["buffers[0].uri", "no such file"]),
+    "buffer uri of a scheme": (put(BUFFER + ["uri"], "file:data.bin"), ["buffers[0].uri", "colon"]),
+    "buffer uri too long": (put(BUFFER + ["uri"], 300 * "a"), ["buffers[0].uri", "aaa..."]),
+    "buffer uri by a link": (put(BUFFER + ["uri"], "link.bin"), ["buffers[0].uri", "outside", "link"]),
+    "buffer uri by a linked folder": (put(BUFFER + ["uri"], "up/data.bin"), ["buffers[0].uri", "outside"]),
+    "buffer uri in a circle": (put(BUFFER + ["uri"], "circle.bin"), ["buffers[0].uri", "circle.bin"]),
+    "image uri that ends early": (put(["images", 0, "uri"], "../data.bin%zz/../scenes/texture.png"),
+                                  ["images[0].uri", "outside"]),
+    "image uri by a link": (put(["images", 0, "uri"], "link.bin"), ["images[0].uri", "outside", "link"]),
+    "image uri by backslashes": (put(["images", 0, "uri"], "a\\b.png"), ["images[0].uri", "backslash"]),
     "buffer uri of no file": (put(BUFFER + ["uri"], "nowhere.bin"), ["buffers[0].uri", "nowhere.bin"]),
     "buffer uri the folder": (put(BUFFER + ["uri"], "."), ["buffers[0].uri"]),
     "buffer uri empty": (put(BUFFER + ["uri"], ""), ["buffers[0].uri"]),
@@ -460,9 +494,6 @@ CHANGES = {
                                        d["materials"][0]["extensions"][
                                            "KHR_materials_emissive_strength"].update(
                                                emissiveStrength=1e30)), ["materials[0]", "1e+30"]),
-    "spot without direction": (lambda d: d["nodes"][1].update(
-        scale=[0, 0, 0], extensions={"KHR_lights_punctual": {"light": 1}}), ["nodes[1]", "direction"]),
-    "camera without direction": (put(["nodes", 2, "scale"], [1, 1, 0]), ["nodes[2]", "direction"]),
     "vertices far away": (put(["nodes", 0, "translation"], [2e9, 0, 0]), ["nodes[0]", "2000000000"]),
     "skin joint beyond": (put(["skins", 0, "joints"], [8]), ["skins[0].joints[0]", "8"]),
 }
@@ -486,7 +517,7 @@ FILES = {
     "number NaN.gltf": (TEXT.replace(b'"intensity": 5', b'"intensity": NaN'), ["JSON"]),
     "header only.glb": (b"glTF", ["glb header"]),
     "header cut off.glb": (glb()[:16], ["glb header"]),
-    "version 1.glb": (glb(version=1), ["glb header", "version 1"]),
+    "version 1.glb": (glb(version=1), ["glb header", "version 1", "gltf-pipeline -i"]),
     "length long.glb": (glb(length=10**6), ["glb header", "1000000"]),
     "length short.glb": (glb(length=40), ["glb header", "40"]),
     "first chunk BIN.glb": (glb(chunks=[(0x004E4942, DATA)]), ["chunk 0"]),
@@ -494,8 +525,7 @@ FILES = {
     "chunk beyond.glb": (b"glTF" + struct.pack("<IIII", 2, 24, 4000, 0x4E4F534A) + b"{}  ", ["chunk 0", "4000"]),
     "chunk header cut off.glb": (b"glTF" + struct.pack("<IIII", 2, 28, 4, 0x4E4F534A) + b"{}  " + b"\0\0\0\0",
                                  ["chunk 1"]),
-    "chunk no multiple of 4.glb": (b"glTF" + struct.pack("<IIII", 2, 22, 2, 0x4E4F534A) + b"{}",
-                                   ["chunk 0", "multiple"]),
+    "asset missing.glb": (b"glTF" + struct.pack("<IIII", 2, 22, 2, 0x4E4F534A) + b"{}", ["'asset'"]),
     "without binary.glb": (glb(chunks=[(0x4E4F534A, json.dumps(
         dict(valid(), buffers=[{"byteLength": 60}])).encode() + b"   "[:(-len(json.dumps(
             dict(valid(), buffers=[{"byteLength": 60}]))) % 4)])]), ["uffer"]),
@@ -534,6 +564,9 @@ def main():
     (folder / "data.bin").write_bytes(DATA)
     for name, data in IMAGES.items():
         (inside / name).write_bytes(data)
+    for name, target in (("link.bin", "../data.bin"), ("up", ".."), ("circle.bin", "circle.bin")):
+        (inside / name).unlink(missing_ok=True)
+        (inside / name).symlink_to(target)
     cases = {}
     for name, (change, words) in CHANGES.items():
         document = valid()

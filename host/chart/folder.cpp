@@ -61,6 +61,9 @@ void check_chart_folder(const std::string& option, const std::string& path) {
     const fs::path around = target.parent_path();
     std::error_code error;
     if (path.empty()) throw InputError("{}: the name is empty", option);
+    (void)fs::status(path, error);
+    if (error == std::errc::filename_too_long)
+        throw InputError("{} {}: the name is too long", option, path);
     if (!fs::is_directory(around, error))
         throw InputError("{} {}: there is no folder {}", option, path, around.string());
     if (access(around.c_str(), W_OK) != 0)
@@ -80,7 +83,8 @@ void write_chart_folder(const std::string& path,
     const Uninterrupted uninterrupted;
     const fs::path target = folder_of(path);
     const fs::path aside =
-        target.parent_path() / fmt::format(".{}.{}.part", target.filename().string(), getpid());
+        target.parent_path() /
+        fmt::format(".{}.{}.part", target.filename().string().substr(0, 200), getpid());
     std::error_code error;
     try {
         if (!fs::create_directory(aside, error))

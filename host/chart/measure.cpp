@@ -8,6 +8,7 @@
 
 #include "clock.hpp"
 #include "error.hpp"
+#include "print.hpp"
 
 namespace manylight {
 namespace {
@@ -75,7 +76,7 @@ class Measurement {
             out_.reference = Reference::load(out_.reference_file, key_, renderer_.width(),
                                              renderer_.height(), is_exact());
         } catch (const InputError& error) {
-            fmt::print(stderr, "warning: {}; the reference is made anew\n", error.what());
+            warn("{}; the reference is made anew", error.what());
         }
         out_.cached_images = out_.reference.count();
     }
@@ -157,8 +158,8 @@ class Measurement {
         });
         std::string& baseline = out_.options.baseline;
         if (std::ranges::count(out_.settings, baseline, &Setting::sampler) > 0) return;
-        fmt::print(stderr, "warning: --baseline {}: all its settings are left out; {} is taken\n",
-                   baseline, out_.settings.front().sampler);
+        warn("--baseline {}: all its settings are left out; {} is taken", baseline,
+             out_.settings.front().sampler);
         baseline = out_.settings.front().sampler;
     }
 

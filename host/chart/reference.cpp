@@ -89,7 +89,7 @@ void Reference::save(const std::string& path, const std::string& key) const {
             out.values[6 * i + 3 + c] = static_cast<float>(deviations_[3 * i + c]);
         }
     const json facts = {{"key", key}, {"luminances", luminances_}, {"seconds", seconds_}};
-    write_exr(path, {out}, {{fact, facts.dump()}});
+    write_exr(path, {out}, {{fact, facts.dump(-1, ' ', true, json::error_handler_t::replace)}});
 }
 
 Reference Reference::load(const std::string& path, const std::string& key, unsigned width,

@@ -14,6 +14,7 @@
 #include "error.hpp"
 #include "output/progress.hpp"
 #include "output/write_file.hpp"
+#include "print.hpp"
 #include "scene/builtin/builtin.hpp"
 #include "scene/gltf_parse.hpp"
 #include "stages/gbuffer.hpp"
@@ -74,16 +75,15 @@ json to_json(const RaySetResult& set, const TracingResult& tracing) {
 }
 
 void print(const RaySetResult& set, const TracingResult& used) {
-    fmt::print("\n{}: {} rays, {} of them judged by the reference\n", set.name, set.rays,
-               set.judged);
+    say("\n{}: {} rays, {} of them judged by the reference\n", set.name, set.rays, set.judged);
     for (const auto* list : {&set.kernels, &set.embree})
         for (const TracingResult& tracing : *list) {
-            fmt::print("  {:<28}{:8.2f} Mrays/s", tracing.name, rate(set.rays, tracing));
+            say("  {:<28}{:8.2f} Mrays/s", tracing.name, rate(set.rays, tracing));
             if (list == &set.embree) {
                 const Quartiles r = ratio(used, tracing);
-                fmt::print("   ours / this {:.2f} ({:.2f} to {:.2f})", r.median, r.lower, r.upper);
+                say("   ours / this {:.2f} ({:.2f} to {:.2f})", r.median, r.lower, r.upper);
             }
-            fmt::print("\n");
+            say("\n");
         }
 }
 
@@ -138,8 +138,7 @@ void bench_loading(const SceneArguments& scene, const Device& device, json& out)
                       {"ratio", quartiles(ratios).median},
                       {"peak_bytes", peak * 1024},
                       {"peak_over_file", of_file}};
-    fmt::print(
-        "loading {:.3f} s (tinygltf alone {:.3f} s), BVH {:.3f} s: {:.2f} times what tinygltf and "
+    say("loading {:.3f} s (tinygltf alone {:.3f} s), BVH {:.3f} s: {:.2f} times what tinygltf and "
         "the BVH take; memory of the process {:.1f} MiB, {:.2f} times the file\n",
         quartiles(loads).median, quartiles(parsers).median, quartiles(builds_alone).median,
         quartiles(ratios).median, static_cast<double>(peak) / 1024, of_file);
@@ -165,17 +164,16 @@ WideBvh measure_builds(const LoadedScene& loaded, const BenchArguments& argument
                   {"block", bvh.block},
                   {"build_s", quartiles(ours).median},
                   {"memory_bytes", bytes}};
-    fmt::print("BVH of width {}, blocks of {}: {:.3f} s, {:.1f} MiB\n", bvh.width, bvh.block,
-               quartiles(ours).median, static_cast<double>(bytes) / (1 << 20));
+    say("BVH of width {}, blocks of {}: {:.3f} s, {:.1f} MiB\n", bvh.width, bvh.block,
+        quartiles(ours).median, static_cast<double>(bytes) / (1 << 20));
     if (embree) {
         out["embree"] = {{"build_s", quartiles(theirs).median},
                          {"memory_bytes", embree->memory_bytes()}};
-        fmt::print("Embree's, of medium quality: {:.3f} s, {:.1f} MiB\n", quartiles(theirs).median,
-                   static_cast<double>(embree->memory_bytes()) / (1 << 20));
+        say("Embree's, of medium quality: {:.3f} s, {:.1f} MiB\n", quartiles(theirs).median,
+            static_cast<double>(embree->memory_bytes()) / (1 << 20));
     } else {
-        fmt::print("{}: nothing to compare with\n", EmbreeScene::available()
-                                                        ? "Embree gets no instances here"
-                                                        : "built without Embree");
+        say("{}: nothing to compare with\n",
+            EmbreeScene::available() ? "Embree gets no instances here" : "built without Embree");
     }
     return bvh;
 }
@@ -264,26 +262,26 @@ void bench_stages(const LoadedScene& loaded, const Device& device, const BenchAr
         totals.push_back(total);
     }
     const double total = quartiles(totals).median;
-    fmt::print("\nstages, {}, {} light samples, 1 spp, {} x {} (all verified)\n", options.sampler,
-               options.light_samples, loaded.width, loaded.height);
+    say("\nstages, {}, {} light samples, 1 spp, {} x {} (all verified)\n", options.sampler,
+        options.light_samples, loaded.width, loaded.height);
     for (const auto& [stage, times] : seconds) {
         const double median = quartiles(times).median;
-        fmt::print("  {:<18}{:9.4f} s {:6.1f} %\n", stage, median, 100 * median / total);
+        say("  {:<18}{:9.4f} s {:6.1f} %\n", stage, median, 100 * median / total);
         out["stages"][stage] = {{"seconds", median}, {"share", median / total}};
     }
     if (shadow_rays == 0) return;
     const double shadow_rate =
         static_cast<double>(shadow_rays) / quartiles(seconds.at("shadows")).median / 1e6;
-    fmt::print("  {:<18}{:9.4f} s\n  shadow rays: {}, {:.2f} Mrays/s\n", "all", total, shadow_rays,
-               shadow_rate);
+    say("  {:<18}{:9.4f} s\n  shadow rays: {}, {:.2f} Mrays/s\n", "all", total, shadow_rays,
+        shadow_rate);
     out["stages"]["shadow_mrays_per_s"] = shadow_rate;
 }
 
 void write_json(const std::string& path, const json& out) {
     if (path.empty()) return;
-    const std::string text = out.dump(2, ' ', false, json::error_handler_t::replace) + "\n";
+    const std::string text = out.dump(2, ' ', true, json::error_handler_t::replace) + "\n";
     write_file(path, std::as_bytes(std::span(text)));
-    fmt::print("\nwrote {}\n", path);
+    say("\nwrote {}\n", path);
 }
 
 }  // namespace
@@ -323,9 +321,9 @@ int run_bench(const BenchArguments& arguments) {
     if (loaded.scene.lights.empty())
         throw InputError("{}: has no lights: there are no shadow rays to measure",
                          loaded.scene.file);
-    fmt::print("{}: {} triangles, {} lights, camera '{}', {} x {}\n{} ({})\n", loaded.scene.file,
-               loaded.scene.seen_triangle_count(), loaded.scene.lights.size(), loaded.view.name,
-               loaded.width, loaded.height, device.info().name, device.info().platform);
+    say("{}: {} triangles, {} lights, camera '{}', {} x {}\n{} ({})\n", loaded.scene.file,
+        loaded.scene.seen_triangle_count(), loaded.scene.lights.size(), loaded.view.name,
+        loaded.width, loaded.height, device.info().name, device.info().platform);
     json out = {{"version", MANYLIGHT_VERSION},
                 {"scene", loaded.scene.file},
                 {"view", loaded.view.name},

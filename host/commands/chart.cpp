@@ -11,6 +11,7 @@
 #include "error.hpp"
 #include "output/error_picture.hpp"
 #include "output/write_file.hpp"
+#include "print.hpp"
 
 namespace manylight {
 namespace {
@@ -47,6 +48,7 @@ std::string view_options(const ChartArguments& arguments, const LoadedScene& loa
     if (scene.cull_back_faces) out += " --cull-back-faces";
     if (scene.storage != MeshStorage::automatic)
         out += scene.storage == MeshStorage::shared ? " --instances shared" : " --instances copied";
+    if (!scene.variant.empty()) out += " --variant " + quote(scene.variant);
     if (scene.lamp_scale != 1) out += fmt::format(" --lamp-scale {}", scene.lamp_scale);
     if (!scene.device.empty()) out += " --device " + quote(scene.device);
     if (scene.threads > 0) out += fmt::format(" --threads {}", scene.threads);
@@ -113,23 +115,22 @@ void write_chart(const std::string& output, const Chart& chart, const json& fact
                    {"manylight:relmse", static_cast<float>(error.relmse)}});
         write_text(folder / "report.html", report);
         write_text(folder / "chart.json",
-                   facts.dump(1, ' ', false, json::error_handler_t::replace) + "\n");
+                   facts.dump(1, ' ', true, json::error_handler_t::replace) + "\n");
     });
 }
 
 void print_summary(const Chart& chart, const std::vector<SettingSummary>& summaries) {
-    fmt::print("\n{:<24}{:>8}{:>5}{:>11}{:>12}{:>10}{:>10}{:>8}\n", "sampler", "samples", "spp",
-               "seconds", "relMSE", "MAPE", "bias", "z");
+    say("\n{:<24}{:>8}{:>5}{:>11}{:>12}{:>10}{:>10}{:>8}\n", "sampler", "samples", "spp", "seconds",
+        "relMSE", "MAPE", "bias", "z");
     for (const SettingSummary& s : summaries)
-        fmt::print("{:<24}{:>8}{:>5}{:>11.4f}{:>12.3g}{:>10.3g}{:>9.3f}%{:>8}\n", s.setting.sampler,
-                   s.setting.light_samples, s.setting.spp, s.seconds.median, s.relmse.median,
-                   s.mape.median, 100 * s.bias, s.z ? fmt::format("{:.1f}", *s.z) : "-");
+        say("{:<24}{:>8}{:>5}{:>11.4f}{:>12.3g}{:>10.3g}{:>9.3f}%{:>8}\n", s.setting.sampler,
+            s.setting.light_samples, s.setting.spp, s.seconds.median, s.relmse.median,
+            s.mape.median, 100 * s.bias, s.z ? fmt::format("{:.1f}", *s.z) : "-");
     for (const LeftOut& left : chart.left_out)
-        fmt::print("left out: {}, {} light samples, {} spp: {}\n", left.setting.sampler,
-                   left.setting.light_samples, left.setting.spp, left.reason);
+        say("left out: {}, {} light samples, {} spp: {}\n", left.setting.sampler,
+            left.setting.light_samples, left.setting.spp, left.reason);
     const double own = chart.reference.error().relmse;
-    fmt::print(
-        "\nreference: {}, {} spp, its own relMSE {:.3g}; the smallest that it judges {:.3g}\n",
+    say("\nreference: {}, {} spp, its own relMSE {:.3g}; the smallest that it judges {:.3g}\n",
         chart.reference_setting.sampler, chart.reference_setting.spp * chart.reference.count(), own,
         chart.smallest_error);
 }
@@ -155,10 +156,9 @@ int run_chart(const ChartArguments& arguments) {
     Renderer renderer(device, loaded.scene, bvh, loaded.camera, loaded.width, loaded.height,
                       arguments.memory);
     if (!options.quiet)
-        fmt::print("{}: {} triangles, {} lights, camera '{}', {} x {}\n{} ({})\n",
-                   loaded.scene.file, loaded.scene.seen_triangle_count(),
-                   loaded.scene.lights.size(), loaded.view.name, loaded.width, loaded.height,
-                   device.info().name, device.info().platform);
+        say("{}: {} triangles, {} lights, camera '{}', {} x {}\n{} ({})\n", loaded.scene.file,
+            loaded.scene.seen_triangle_count(), loaded.scene.lights.size(), loaded.view.name,
+            loaded.width, loaded.height, device.info().name, device.info().platform);
     const Chart chart = measure_chart(renderer, options);
     const std::vector<SettingSummary> summaries = summarise(chart);
     const std::vector<ShownImage> shown = choose_images(chart, summaries);
@@ -179,14 +179,13 @@ int run_chart(const ChartArguments& arguments) {
     write_chart(output, chart, facts, report, shown);
     const double own = chart.reference.error().relmse;
     if (own * reference_ratio > chart.smallest_error && chart.smallest_error > 0)
-        fmt::print(stderr,
-                   "warning: the reference's own relMSE {:.3g} is only {:.3g} times below the "
-                   "smallest that it judges\n",
-                   own, chart.smallest_error / own);
+        warn(
+            "the reference's own relMSE {:.3g} is only {:.3g} times below the "
+            "smallest that it judges",
+            own, chart.smallest_error / own);
     if (options.quiet) return 0;
     print_summary(chart, summaries);
-    fmt::print("{:.0f} s; wrote {}\n", seconds_since(start),
-               (fs::path(output) / "report.html").string());
+    say("{:.0f} s; wrote {}\n", seconds_since(start), (fs::path(output) / "report.html").string());
     return 0;
 }
 

@@ -23,6 +23,7 @@ struct SceneArguments {
     std::optional<double> seconds;  // of the file's first animation; none: at rest
     double lamp_scale = 1;          // of punctual lights' intensities
     bool cull_back_faces = false;
+    std::string variant;  // of materials; empty: the file's own
     MeshStorage storage = MeshStorage::automatic;
     std::string device;
     unsigned threads = 0;

@@ -8,6 +8,7 @@
 #include "output/error_picture.hpp"
 #include "output/metrics.hpp"
 #include "output/write_file.hpp"
+#include "print.hpp"
 
 namespace manylight {
 namespace {
@@ -31,22 +32,21 @@ json to_json(const Difference& d) {
 }
 
 void print(const Difference& d) {
-    fmt::print(
-        "relMSE {:.6g}, MAPE {:.6g}, RMSE {:.6g} cd/m2, mean {:+.4f}%, of the error in the worst "
+    say("relMSE {:.6g}, MAPE {:.6g}, RMSE {:.6g} cd/m2, mean {:+.4f}%, of the error in the worst "
         "1% of pixels {:.1f}%, in the worst 0.1% {:.1f}%\n",
         d.relmse, d.mape, d.rmse, 100 * d.bias, 100 * d.worst_hundredth, 100 * d.worst_thousandth);
 }
 
 void print(const std::vector<Judged>& judged) {
     for (const Judged& j : judged) {
-        if (judged.size() > 1) fmt::print("{}: ", j.file);
+        if (judged.size() > 1) say("{}: ", j.file);
         print(j.difference);
     }
     if (judged.size() < 2) return;
     const Difference& a = judged[0].difference;
     const Difference& b = judged[1].difference;
-    fmt::print("{} over {}: relMSE {:.4g}, MAPE {:.4g}\n", judged[1].file, judged[0].file,
-               b.relmse / a.relmse, b.mape / a.mape);
+    say("{} over {}: relMSE {:.4g}, MAPE {:.4g}\n", judged[1].file, judged[0].file,
+        b.relmse / a.relmse, b.mape / a.mape);
 }
 
 void print_json(const std::vector<Judged>& judged, const std::string& reference) {
@@ -58,7 +58,7 @@ void print_json(const std::vector<Judged>& judged, const std::string& reference)
             out["images"].back()["file"] = j.file;
         }
     }
-    fmt::print("{}\n", out.dump(-1, ' ', false, json::error_handler_t::replace));
+    say("{}\n", out.dump(-1, ' ', true, json::error_handler_t::replace));
 }
 
 void write_picture(const std::string& path, const std::vector<Judged>& judged) {
@@ -93,10 +93,10 @@ int run_compare(const CompareArguments& arguments) {
         j.difference = compare_images(j.image, reference, file, reference_file);
         const Difference& d = j.difference;
         if (d.bad > 0)
-            fmt::print(stderr,
-                       "warning: {}: {} of its values are no finite numbers, the first at {}; "
-                       "they are left out\n",
-                       file, d.bad, place_of_value(j.image, d.first_bad));
+            warn(
+                "{}: {} of its values are no finite numbers, the first at {}; "
+                "they are left out",
+                file, d.bad, place_of_value(j.image, d.first_bad));
         bad += d.bad;
         judged.push_back(std::move(j));
     }
@@ -106,7 +106,7 @@ int run_compare(const CompareArguments& arguments) {
         print(judged);
     if (!arguments.output.empty()) {
         write_picture(arguments.output, judged);
-        if (!arguments.json) fmt::print("wrote {}\n", arguments.output);
+        if (!arguments.json) say("wrote {}\n", arguments.output);
     }
     return bad > 0 ? 3 : 0;
 }

@@ -13,6 +13,7 @@
 #include "output/pixel_picture.hpp"
 #include "output/write_file.hpp"
 #include "pipeline/frame.hpp"
+#include "print.hpp"
 #include "reference/shading.hpp"
 
 namespace manylight {
@@ -168,28 +169,24 @@ void print(const Inspected& in, std::size_t rows) {
         facing += n.facing;
         seen += n.seen;
     }
-    fmt::print("surface: {}, normal {}, {:.2f} m from the camera\n",
-               show(glm::vec3(r.surface.position)), show(glm::vec3(r.surface.normal)),
-               r.surface.position.w);
-    fmt::print("         {}\n", material_text(scene, r));
-    fmt::print("lights:  of {}, {} face it, and it sees {} of those\n", scene.lights.size(), facing,
-               seen);
-    fmt::print(
-        "tile {}: a cut of {} nodes, of which {} are one light and {} are groups; refined to {} "
+    say("surface: {}, normal {}, {:.2f} m from the camera\n", show(glm::vec3(r.surface.position)),
+        show(glm::vec3(r.surface.normal)), r.surface.position.w);
+    say("         {}\n", material_text(scene, r));
+    say("lights:  of {}, {} face it, and it sees {} of those\n", scene.lights.size(), facing, seen);
+    say("tile {}: a cut of {} nodes, of which {} are one light and {} are groups; refined to {} "
         "for this pixel\n",
         r.tile, r.cut_nodes, r.cut_lights, r.cut_nodes - r.cut_lights, r.nodes.size());
-    fmt::print("light:   {:.4g} cd/m2 of all lights at the pixel's centre; rendered {:.4g} cd/m2\n",
-               in.luminance, luminance(in.rendered));
+    say("light:   {:.4g} cd/m2 of all lights at the pixel's centre; rendered {:.4g} cd/m2\n",
+        in.luminance, luminance(in.rendered));
     if (in.emitted != glm::vec3(0))
-        fmt::print("         of which it emits {:.4g} cd/m2 itself\n", luminance(in.emitted));
-    fmt::print("draws:   {:.2f} in a pixel sample\n\n", in.draws);
+        say("         of which it emits {:.4g} cd/m2 itself\n", luminance(in.emitted));
+    say("draws:   {:.2f} in a pixel sample\n\n", in.draws);
     rows = std::min(rows, in.ranked.size());
-    fmt::print("{:>3}  {:<26} {:<28} {:>10} {:>7} {:>10} {:>5} {:>6} {:>11} {:>6}\n", "", "light",
-               "", "true cd/m2", "of all", "weight", "V^", "draws", "visible", "noise");
+    say("{:>3}  {:<26} {:<28} {:>10} {:>7} {:>10} {:>5} {:>6} {:>11} {:>6}\n", "", "light", "",
+        "true cd/m2", "of all", "weight", "V^", "draws", "visible", "noise");
     for (std::size_t i = 0; i < rows; ++i) {
         const InspectedNode& n = in.ranked[i];
-        fmt::print(
-            "{:>3}  {:<26} {:<28} {:>10.4g} {:>6.1f}% {:>10.4g} {:>5.2f} {:>6.3f} {:>11} "
+        say("{:>3}  {:<26} {:<28} {:>10.4g} {:>6.1f}% {:>10.4g} {:>5.2f} {:>6.3f} {:>11} "
             "{:>5.1f}%\n",
             i + 1, in.name(n), in.place(n), n.contribution, 100 * in.light_share(n), n.weight,
             n.visibility, n.draws, seen_text(in, n), 100 * n.noise);
@@ -201,11 +198,11 @@ void print(const Inspected& in, std::size_t rows) {
             light += in.light_share(in.ranked[i]);
             draws += in.ranked[i].draws;
         }
-        fmt::print("     {} more: {} of the light, {:.3f} draws\n", in.ranked.size() - rows,
-                   percent(light), draws);
+        say("     {} more: {} of the light, {:.3f} draws\n", in.ranked.size() - rows,
+            percent(light), draws);
     }
-    fmt::print("\n");
-    for (const std::string& sentence : explain(in)) fmt::print("{}\n", sentence);
+    say("\n");
+    for (const std::string& sentence : explain(in)) say("{}\n", sentence);
 }
 
 json to_json(const Inspected& in, std::size_t rows) {
@@ -339,8 +336,8 @@ int run_inspect(const InspectArguments& arguments) {
                 {"tile", tile},
                 {"hit", report.hit()}};
     PixelPicture picture{pixel, ADAPTIVE_TILE, {}, {}};
-    fmt::print("pixel {}, {} of {} x {}, {} light samples, {} spp\n", pixel.x, pixel.y,
-               options.width, options.height, options.light_samples, options.spp);
+    say("pixel {}, {} of {} x {}, {} light samples, {} spp\n", pixel.x, pixel.y, options.width,
+        options.height, options.light_samples, options.spp);
     std::string nothing;
     if (!report.hit())
         nothing = "It sees nothing: no light is drawn, and it is black without noise.";
@@ -352,16 +349,16 @@ int run_inspect(const InspectArguments& arguments) {
         out.update(to_json(in, arguments.top_lights));
         picture = make_picture(in, arguments.top_lights);
     } else {
-        fmt::print("{}\n", nothing);
+        say("{}\n", nothing);
         out["explanation"] = {nothing};
         picture.lines = {fmt::format("pixel {}, {}", pixel.x, pixel.y), nothing};
     }
     write_png(file, draw_pixel_picture(result.image, picture), 1, {});
-    fmt::print("\nwrote {}\n", file);
+    say("\nwrote {}\n", file);
     if (!arguments.json.empty()) {
-        const std::string text = out.dump(2, ' ', false, json::error_handler_t::replace) + "\n";
+        const std::string text = out.dump(2, ' ', true, json::error_handler_t::replace) + "\n";
         write_file(arguments.json, std::as_bytes(std::span(text)));
-        fmt::print("wrote {}\n", arguments.json);
+        say("wrote {}\n", arguments.json);
     }
     return 0;
 }

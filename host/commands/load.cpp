@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include <fmt/format.h>
-
 #include <cmath>
 
 #include "commands/commands.hpp"
 #include "error.hpp"
 #include "output/progress.hpp"
 #include "output/write_file.hpp"
+#include "print.hpp"
 #include "stages/device_scene.hpp"
 
 namespace manylight {
@@ -52,14 +51,14 @@ LoadedScene load(const SceneArguments& arguments, bool quiet) {
         scene = load_scene(arguments.file, {.seconds = arguments.seconds,
                                             .lamp_scale = arguments.lamp_scale,
                                             .cull_back_faces = arguments.cull_back_faces,
+                                            .variant = arguments.variant,
                                             .storage = arguments.storage,
                                             .report = [&](double share) { progress.set(share); }});
     }
-    for (const std::string& warning : scene.warnings) fmt::print(stderr, "warning: {}\n", warning);
+    for (const std::string& warning : scene.warnings) warn("{}", warning);
     out.emitter_points = arguments.emitter_points.value_or(scene.emitter_points.value_or(0));
     add_emitters(scene, out.emitter_points);
-    if (scene.lights.empty())
-        fmt::print(stderr, "warning: {}: the scene has no lights\n", scene.file);
+    if (scene.lights.empty()) warn("{}: the scene has no lights", scene.file);
     out.view = find_view(scene, arguments.camera);
     choose_size(out, arguments, out.view.aspect);
     out.camera = make_camera(out.view, out.width, out.height, arguments.shift);

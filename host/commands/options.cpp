@@ -108,6 +108,8 @@ void add_view(CLI::App& command, SceneArguments& scene, unsigned height = 512) {
     command.add_flag("--cull-back-faces", scene.cull_back_faces,
                      "no ray meets the back of what is not doubleSided, as in viewers of glTF "
                      "(default: all is seen from both sides, as in Blender)");
+    command.add_option("--variant", scene.variant,
+                       "materials of that variant of the file's (KHR_materials_variants)");
     command
         .add_option("--instances", scene.storage,
                     "meshes that stand in several places: shared (stored once), copied (faster to "

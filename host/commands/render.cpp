@@ -13,6 +13,7 @@
 #include "output/write_file.hpp"
 #include "pipeline/aov.hpp"
 #include "pipeline/frame.hpp"
+#include "print.hpp"
 
 namespace manylight {
 namespace {
@@ -82,15 +83,13 @@ FrameResult render_frame(Frame& frame, const RenderArguments& arguments) {
 }
 
 void print_plan(const LoadedScene& loaded, const Plan& plan, const DeviceInfo& device) {
-    fmt::print("{}: {} triangles, {} lights, camera '{}'\n", loaded.scene.file,
-               loaded.scene.seen_triangle_count(), loaded.scene.lights.size(), loaded.view.name);
-    fmt::print("{} ({})\n", device.name, device.platform);
-    fmt::print("memory: {}: scene {}, image {}, pixels in work {}", mebibytes(plan.total_bytes()),
-               mebibytes(plan.scene_bytes), mebibytes(plan.image_bytes),
-               mebibytes(plan.batch_bytes));
-    if (plan.clusters)
-        fmt::print(", of which contribution matrix {}", mebibytes(plan.matrix_bytes));
-    fmt::print("; {} batch{}\n", plan.batches, plan.batches == 1 ? "" : "es");
+    say("{}: {} triangles, {} lights, camera '{}'\n", loaded.scene.file,
+        loaded.scene.seen_triangle_count(), loaded.scene.lights.size(), loaded.view.name);
+    say("{} ({})\n", device.name, device.platform);
+    say("memory: {}: scene {}, image {}, pixels in work {}", mebibytes(plan.total_bytes()),
+        mebibytes(plan.scene_bytes), mebibytes(plan.image_bytes), mebibytes(plan.batch_bytes));
+    if (plan.clusters) say(", of which contribution matrix {}", mebibytes(plan.matrix_bytes));
+    say("; {} batch{}\n", plan.batches, plan.batches == 1 ? "" : "es");
 }
 
 // All parameters that the image depends on.
@@ -170,7 +169,7 @@ bool asks_clusters(const RenderOptions& options) {
 
 void warn_if_not_finite(const Image& image) {
     const auto bad = std::ranges::count_if(image.values, [](float v) { return !std::isfinite(v); });
-    if (bad > 0) fmt::print(stderr, "warning: {} pixel values are not finite numbers\n", bad);
+    if (bad > 0) warn("{} pixel values are not finite numbers", bad);
 }
 
 void write_files(const RenderArguments& arguments, const std::vector<std::string>& images,
@@ -190,7 +189,7 @@ void write_files(const RenderArguments& arguments, const std::vector<std::string
         write_png(arguments.cluster_map, draw_cluster_map(result.image, exposure, result.aovs), 1,
                   metadata);
     if (!arguments.stats.empty()) {
-        const std::string text = stats.dump(2, ' ', false, json::error_handler_t::replace) + "\n";
+        const std::string text = stats.dump(2, ' ', true, json::error_handler_t::replace) + "\n";
         write_file(arguments.stats, std::as_bytes(std::span(text)));
     }
 }
@@ -215,16 +214,15 @@ void print_summary(const RenderOptions& options, const FrameResult& result, doub
     const std::string later = result.later_light_samples == result.light_samples
                                   ? ""
                                   : fmt::format(", later {}", result.later_light_samples);
-    fmt::print(
-        "{}, {} light samples{}, {:.4g} spp, {} x {}: {:.2f} s (prepare {:.2f}, render "
+    say("{}, {} light samples{}, {:.4g} spp, {} x {}: {:.2f} s (prepare {:.2f}, render "
         "{:.2f})\n",
         options.sampler, result.light_samples, later, result.spp, options.width, options.height,
         seconds, result.prepare_seconds, result.render_seconds);
     if (!result.error) return;
-    fmt::print("estimated relMSE {:.3g} +- {:.2g} (95%)\n", result.error->relmse,
-               1.96 * result.error->standard_error);
+    say("estimated relMSE {:.3g} +- {:.2g} (95%)\n", result.error->relmse,
+        1.96 * result.error->standard_error);
     if (options.target_error > 0 && result.error->relmse > options.target_error)
-        fmt::print(stderr, "warning: --target-error {}: not reached\n", options.target_error);
+        warn("--target-error {}: not reached", options.target_error);
 }
 
 }  // namespace
@@ -257,7 +255,7 @@ int run_render(const RenderArguments& arguments) {
         const SamplerChoice choice = choose_sampler(loaded.scene.lights.size(),
                                                     options.samples_of(0), asks_clusters(options));
         options.sampler = choice.name;
-        if (!arguments.quiet) fmt::print("sampler {}: {}\n", choice.name, choice.reason);
+        if (!arguments.quiet) say("sampler {}: {}\n", choice.name, choice.reason);
     }
     options.width = loaded.width;
     options.height = loaded.height;
@@ -286,7 +284,7 @@ int run_render(const RenderArguments& arguments) {
     if (!arguments.quiet) {
         print_summary(options, result, seconds_since(start));
         for (const auto& [option, path] : files_of(arguments, images))
-            if (fs::exists(path)) fmt::print("wrote {}\n", path);
+            if (fs::exists(path)) say("wrote {}\n", path);
     }
     return 0;
 }

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include <fmt/format.h>
-
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "commands/commands.hpp"
 #include "output/write_file.hpp"
+#include "print.hpp"
 
 namespace manylight {
 
@@ -30,14 +29,15 @@ int run_scene(const BuiltinArguments& arguments) {
     if (arguments.list) {
         json scenes = json::array();
         for (const Builtin& scene : all_builtins()) scenes.push_back(to_json(scene));
-        fmt::print("{}\n", scenes.dump(1));
+        const std::string text = scenes.dump(1) + "\n";
+        std::fwrite(text.data(), 1, text.size(), stdout);
         return 0;
     }
     const std::string ending = ".glb";
     check_output("--output", arguments.output, {&ending, 1});
     make_builtin(arguments.name, arguments.options).write(arguments.output);
-    fmt::print("wrote {} ({} KiB)\n", arguments.output,
-               std::filesystem::file_size(arguments.output) >> 10);
+    say("wrote {} ({} KiB)\n", arguments.output,
+        std::filesystem::file_size(arguments.output) >> 10);
     return 0;
 }
 

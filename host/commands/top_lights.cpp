@@ -6,6 +6,7 @@
 #include "clock.hpp"
 #include "commands/commands.hpp"
 #include "commands/describe.hpp"
+#include "print.hpp"
 
 namespace manylight {
 
@@ -26,26 +27,24 @@ nlohmann::json report_top_lights(const LoadedScene& loaded, unsigned count, uint
         {"seconds", seconds_since(start)},  {"lights", lights}};
     if (quiet) return out;
     if (found.lights.empty()) {
-        fmt::print("\nno light reaches the image\n\n");
+        say("\nno light reaches the image\n\n");
         return out;
     }
-    fmt::print("\n{:>3}  {:<26} {:<28} {:>17} {:>12}\n", "", "light", "", "of the light",
-               "seen from");
+    say("\n{:>3}  {:<26} {:<28} {:>17} {:>12}\n", "", "light", "", "of the light", "seen from");
     double sum = 0;
     for (std::size_t i = 0; i < found.lights.size(); ++i) {
         const TopLight& top = found.lights[i];
         sum += top.share;
-        fmt::print("{:>3}  {:<26} {:<28} {:>6.2f}% +- {:>5.2f}% {:>11.1f}%\n", i + 1,
-                   name_of(loaded.scene, top.light), place_of(loaded.scene.lights[top.light]),
-                   100 * top.share, 100 * top.standard_error, 100 * top.seen);
+        say("{:>3}  {:<26} {:<28} {:>6.2f}% +- {:>5.2f}% {:>11.1f}%\n", i + 1,
+            name_of(loaded.scene, top.light), place_of(loaded.scene.lights[top.light]),
+            100 * top.share, 100 * top.standard_error, 100 * top.seen);
     }
     const std::string how =
         found.light_samples == 0
             ? "all lights"
             : fmt::format("{} draws from the light tree for the total, then the listed lights",
                           found.light_samples);
-    fmt::print(
-        "     together {:.1f}% of what lights give the image; estimated at {} of its points ({}), "
+    say("     together {:.1f}% of what lights give the image; estimated at {} of its points ({}), "
         "+- is one standard error\n\n",
         100 * sum, found.points, how);
     return out;

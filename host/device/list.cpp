@@ -115,6 +115,9 @@ DeviceForm form_for(const DeviceInfo& device) {
 std::vector<cl::Device> all_devices() {
     std::vector<cl::Device> all;
     std::vector<cl::Platform> platforms;
+    // PoCL aborts where it is set and empty.
+    const char* cache = std::getenv("POCL_CACHE_DIR");
+    if (cache != nullptr && *cache == '\0') unsetenv("POCL_CACHE_DIR");
     try {
         cl::Platform::get(&platforms);
     } catch (const cl::Error&) {  // the loader reports "no platforms" as an error

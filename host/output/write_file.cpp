@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <climits>
 #include <csignal>
 #include <cstring>
 #include <filesystem>
@@ -16,6 +17,8 @@ namespace manylight {
 namespace {
 
 namespace fs = std::filesystem;
+
+constexpr std::size_t longest_stem = 200;  // bytes of a part's name: a name has 255 at most
 
 // The file that is being written aside, for signals: a process that ends by one leaves none.
 char part_name[4096];
@@ -64,6 +67,10 @@ void check_output(const std::string& option, const std::string& path,
         throw InputError("{} {}: there is no folder {}", option, path, folder.string());
     if (access(folder.c_str(), W_OK) != 0)
         throw InputError("{} {}: the folder {} cannot be written", option, path, folder.string());
+    constexpr std::size_t aside = 32;  // by which the name of a part may be longer
+    (void)fs::status(target, error);
+    if (error == std::errc::filename_too_long || path.size() + aside >= PATH_MAX)
+        throw InputError("{} {}: the name is too long", option, path);
     if (path.empty() || (fs::exists(target, error) && !fs::is_regular_file(target, error)))
         throw InputError("{} {}: is not a regular file", option, path);
 }
@@ -87,7 +94,8 @@ void write_file(const std::string& path, std::span<const std::byte> bytes) {
     // A process that was killed may have left its file, and this one may have its number.
     for (int i = 0; i < 100 && file < 0 && (i == 0 || errno == EEXIST); ++i) {
         aside = target.parent_path() /
-                fmt::format(".{}.{}-{}.part", target.filename().string(), getpid(), i);
+                fmt::format(".{}.{}-{}.part", target.filename().string().substr(0, longest_stem),
+                            getpid(), i);
         has_part = 0;
         std::strncpy(part_name, aside.c_str(), sizeof(part_name) - 1);
         file = open(aside.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);

@@ -6,11 +6,11 @@
 #include <functional>
 #include <nlohmann/json.hpp>
 #include <optional>
-#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "scene/notes.hpp"
 #include "scene/scene.hpp"
 
 namespace manylight {
@@ -24,6 +24,7 @@ struct LoadOptions {
     std::optional<double> seconds = {};  // the moment of the first animation; none: all at rest
     double lamp_scale = 1;               // of punctual lights' intensities
     bool cull_back_faces = false;        // of materials that are not doubleSided
+    std::string variant = {};  // of KHR_materials_variants; empty: the file's own materials
     MeshStorage storage = MeshStorage::automatic;
     std::size_t most_bytes = 0;  // that triangles, or textures, may need; 0: what the machine has
     std::function<void(double)> report = {};  // gets the share done now and then
@@ -41,33 +42,35 @@ struct LoadOptions {
 /// A glTF file before it has a meaning.
 struct GltfFile {
     std::string path;
-    std::vector<unsigned char> bytes;  // the whole file
-    bool is_binary = false;            // .glb
     nlohmann::json json;
+    std::optional<std::vector<unsigned char>> binary;  // the BIN chunk of a .glb
+    Notes notes;                                       // what was read otherwise than it says
 };
 
 /// Reads and parses; checks the container, the nesting depth and the JSON syntax.
 [[nodiscard]] GltfFile read_gltf(const std::string& path);
 
-/// The file that a relative URI names: percent-decoded, seen from the scene's folder, links
-/// followed.
-[[nodiscard]] std::filesystem::path path_of_uri(const GltfFile& file, const std::string& uri);
-
-/// The bytes of the file that a URI names, which check_gltf() has found to lead nowhere else.
-/// Throws InputError that starts with `where`.
-[[nodiscard]] std::vector<unsigned char> read_beside(const GltfFile& file, const std::string& uri,
-                                                     const std::string& where);
+/// The bytes of a regular file, at most 4 GiB. Throws InputError.
+[[nodiscard]] std::vector<unsigned char> read_file(const std::string& path);
 
 constexpr const char* draco_extension = "KHR_draco_mesh_compression";
 
-/// The extensions that are rendered.
-[[nodiscard]] const std::set<std::string>& known_extensions();
+/// The extension by which a buffer view is compressed: EXT_meshopt_compression, or
+/// KHR_meshopt_compression, which says the same. Null: it is not.
+[[nodiscard]] const char* compression_of(const nlohmann::json& buffer_view);
 
-/// Whether a buffer has no data: it only says how large others are when decompressed
-/// (EXT_meshopt_compression).
-[[nodiscard]] bool is_fallback_buffer(const nlohmann::json& buffer);
+/// Whether a buffer has data; others only say how large compressed buffer views are when
+/// decompressed.
+[[nodiscard]] bool has_data(const GltfFile& file, std::size_t buffer);
 
-/// Checks all values of the JSON: types, ranges, indices, node hierarchy, URIs, versions.
+/// Checks all values of the JSON: types, ranges, indices, node hierarchy, URIs, versions. Throws
+/// InputError for what has no sensible reading.
 void check_gltf(const GltfFile& file);
+
+/// Changes the JSON, which check_gltf() has passed, to glTF that says what the file means: where it
+/// breaks the specification (and warns), by the extensions that hide nodes and choose materials,
+/// and where its materials are of specular and glossiness. Throws InputError for a variant that
+/// there is not; empty: none.
+void mend_gltf(GltfFile& file, const std::string& variant);
 
 }  // namespace manylight

@@ -13,8 +13,6 @@
 namespace manylight {
 namespace {
 
-constexpr const char* compression = "EXT_meshopt_compression";
-
 enum class Allowed { never, quantized, always };  // quantized: with KHR_mesh_quantization
 
 // What types an attribute may have.
@@ -120,7 +118,8 @@ std::vector<unsigned char> Accessors::decompress(int view, const nlohmann::json&
                               : meshopt_decodeIndexSequence(out.data(), count, stride, in, length);
     if (failed != 0)
         throw InputError("{}: bufferViews[{}].extensions.{}: its {} bytes do not hold {} {}",
-                         file_.path, view, compression, length, count, mode);
+                         file_.path, view, compression_of(file_.json["bufferViews"][view]), length,
+                         count, mode);
     const std::string filter = compressed.value("filter", "NONE");
     if (filter == "OCTAHEDRAL") meshopt_decodeFilterOct(out.data(), count, stride);
     if (filter == "QUATERNION") meshopt_decodeFilterQuat(out.data(), count, stride);
@@ -130,7 +129,7 @@ std::vector<unsigned char> Accessors::decompress(int view, const nlohmann::json&
 
 std::span<const unsigned char> Accessors::view_bytes(int index) {
     const nlohmann::json& json = file_.json["bufferViews"][index];
-    if (json.contains("extensions") && json["extensions"].contains(compression)) {
+    if (const char* compression = compression_of(json)) {
         const auto found = decompressed_.find(index);
         if (found != decompressed_.end()) return found->second;
         return decompressed_[index] = decompress(index, json["extensions"][compression]);
@@ -196,12 +195,16 @@ std::vector<glm::vec4> Accessors::vectors(int index, Attribute attribute,
     std::vector<glm::vec4> out(in.count, glm::vec4(1));
     for (std::size_t i = 0; i < in.count; ++i) {
         bool finite = true;
+        const bool is_direction = attribute == Attribute::normal || attribute == Attribute::tangent;
         for (int c = 0; c < components; ++c) {
             out[i][c] = component(in.data + i * in.stride + c * bytes, accessor.componentType,
                                   accessor.normalized);
             finite = finite && std::isfinite(out[i][c]);
         }
-        if (!finite)
+        if (!finite && is_direction) {
+            out[i] = glm::vec4(0, 0, 0, 1);
+            notes_.add(where, "is not finite at some vertices; there it is left out");
+        } else if (!finite)
             throw InputError("{}: {}: element {} ({}, {}, {}) is not finite", file_.path, where, i,
                              out[i].x, out[i].y, out[i].z);
     }

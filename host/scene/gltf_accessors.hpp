@@ -35,7 +35,7 @@ class Accessors {
     Accessors(const GltfFile& file, const tinygltf::Model& model);
 
     /// The elements as floats: integers as they are, or as fractions where they are normalized.
-    /// Missing components are 1.
+    /// Missing components are 1. Normals and tangents that are not finite are 0.
     [[nodiscard]] std::vector<glm::vec4> vectors(int accessor, Attribute attribute,
                                                  const std::string& where);
     /// Vertex numbers.
@@ -47,6 +47,8 @@ class Accessors {
     void provide(int accessor, std::vector<unsigned char> bytes) {
         provided_[accessor] = std::move(bytes);
     }
+    /// What was read otherwise than the file says.
+    [[nodiscard]] const Notes& notes() const { return notes_; }
     /// The bytes of a buffer view, decompressed.
     [[nodiscard]] std::span<const unsigned char> view_bytes(int view);
 
@@ -66,6 +68,7 @@ class Accessors {
     const GltfFile& file_;
     const tinygltf::Model& model_;
     bool quantized_;
+    Notes notes_;
     std::map<int, std::vector<unsigned char>> decompressed_;  // by buffer view
     std::map<int, std::vector<unsigned char>> provided_;      // by accessor
 };

@@ -6,7 +6,8 @@
 #include <filesystem>
 #include <set>
 
-#include "scene/gltf.hpp"
+#include "scene/gltf_extensions.hpp"
+#include "scene/gltf_uri.hpp"
 #include "scene/json_value.hpp"
 
 namespace manylight {
@@ -26,9 +27,10 @@ class Checker {
         find_draco_accessors();
         each("accessors", &Checker::accessor);
         each("images", &Checker::image);
-        each("textures", &Checker::texture);
         each("samplers", &Checker::sampler);
+        each("textures", &Checker::sampler_of);
         each("materials", &Checker::material);
+        variant_names();
         each("meshes", &Checker::mesh);
         each("cameras", &Checker::camera);
         if (root_.has("extensions") && root_["extensions"].object().has(lights_extension)) {
@@ -47,8 +49,9 @@ class Checker {
 
   private:
     static constexpr const char* lights_extension = "KHR_lights_punctual";
-    static constexpr const char* compression = "EXT_meshopt_compression";
     static constexpr const char* instancing = "EXT_mesh_gpu_instancing";
+    static constexpr const char* variants = "KHR_materials_variants";
+    static constexpr const char* visibility = "KHR_node_visibility";
     static constexpr const char* emitter_points_key = "emitter_points";
     static constexpr std::uint64_t most_emitter_points = 1u << 24;
     static constexpr std::uint64_t most_coordinate_sets = 15;
@@ -70,7 +73,11 @@ class Checker {
 
     void asset() {
         const JsonValue asset = root_["asset"].object();
-        if (!asset["version"].string().starts_with("2."))
+        const std::string version = asset["version"].string();
+        if (version.starts_with("1.") || version.starts_with("0."))
+            asset["version"].refuse("{} is not 2.x; gltf-pipeline -i OLD -o NEW.glb converts it",
+                                    asset["version"].shown());
+        if (!version.starts_with("2."))
             asset["version"].refuse("{} is not 2.x", asset["version"].shown());
         if (asset.has("minVersion") && asset["minVersion"].string() != "2.0")
             asset["minVersion"].refuse("{} is newer than 2.0", asset["minVersion"].shown());
@@ -83,7 +90,13 @@ class Checker {
             for (std::size_t i = 0; i < names.size(); ++i) {
                 const std::string name = names.at(i).string();
                 if (std::string_view(key) == "extensionsUsed") continue;
-                if (!known_extensions().contains(name))
+                if (name == "KHR_texture_basisu")
+                    names.at(i).refuse(
+                        "KTX2 textures of {} are not read; gltf-transform ktxdecompress OLD "
+                        "NEW.glb "
+                        "converts them",
+                        name);
+                if (extension_kind(name) == Extension::unknown)
                     names.at(i).refuse("the file cannot be rendered without {}, which is not known",
                                        name);
             }
@@ -101,36 +114,21 @@ class Checker {
                 value.refuse("'{}' is no type of a buffer's data", head);
             return;
         }
-        namespace fs = std::filesystem;
-        const fs::path target = path_of_uri(file_, text);
-        const auto holds = [&text](std::string_view part) {
-            return text.find(part) != std::string::npos;
-        };
-        if (target.empty() || holds({"\0", 1}) || holds("%00"))
-            value.refuse("{} names no file", value.shown());
-        if (holds(":") || holds("%3a") || holds("%3A"))
-            value.refuse("{}: only files beside the scene are read", value.shown());
+        const std::filesystem::path file = file_of_uri(file_, text, value.where());
         std::error_code error;
-        const fs::path folder =
-            fs::weakly_canonical(fs::absolute(file_.path, error).parent_path(), error);
-        if (std::ranges::mismatch(folder, target).in1 != folder.end())
-            value.refuse("{} leads outside the scene's folder", value.shown());
-        if (must_exist && !fs::is_regular_file(target, error))
+        if (!must_exist) return;
+        if (!std::filesystem::is_regular_file(file, error))
             value.refuse("{}: no such file beside the scene", value.shown());
+        // Some thousands of buffers that name one file would be as many copies of it.
+        if (!buffer_files_.insert(file).second)
+            value.refuse("{} is another buffer's file too", value.shown());
     }
 
     void buffer(const JsonValue& buffer, std::size_t i) {
-        if (buffer["byteLength"].integer() == 0) buffer["byteLength"].refuse("0 is no length");
-        if (is_fallback_buffer(file_.json["buffers"][i])) return;
+        (void)buffer["byteLength"].integer();
+        if (!has_data(file_, i)) return;
         stored_ += buffer["byteLength"].integer();
-        if (buffer.has("uri")) {
-            uri(buffer["uri"], true);
-            const std::string text = buffer["uri"].string();
-            if (!text.starts_with("data:") && !buffer_files_.insert(text).second)
-                buffer["uri"].refuse("{} is another buffer's file too", buffer["uri"].shown());
-        }
-        if (!buffer.has("uri") && (!file_.is_binary || i != 0))
-            buffer.refuse("'uri' is missing (only the first buffer of a .glb has none)");
+        if (buffer.has("uri")) uri(buffer["uri"], true);
     }
 
     // The part of a buffer that `object` names; returns the buffer's index.
@@ -138,7 +136,6 @@ class Checker {
         const std::size_t buffer = object["buffer"].index(count("buffers"), "buffer");
         const std::uint64_t offset = object.has("byteOffset") ? object["byteOffset"].integer() : 0;
         const std::uint64_t length = object["byteLength"].integer();
-        if (length == 0) object["byteLength"].refuse("0 is no length");
         const std::uint64_t size = root_["buffers"].at(buffer)["byteLength"].integer();
         if (offset > size || length > size - offset)
             object.refuse("byteOffset {} and byteLength {} reach beyond buffer {} of {} bytes",
@@ -146,11 +143,12 @@ class Checker {
         return buffer;
     }
 
-    void buffer_view(const JsonValue& view, std::size_t) {
+    void buffer_view(const JsonValue& view, std::size_t i) {
         const std::size_t buffer = part_of_buffer(view);
-        if (view.has("extensions") && view["extensions"].object().has(compression)) {
-            compressed_view(view, view["extensions"][compression].object());
-        } else if (is_fallback_buffer(file_.json["buffers"][buffer])) {
+        if (view.has("extensions")) (void)view["extensions"].object();
+        if (const char* compression = compression_of(file_.json["bufferViews"][i])) {
+            compressed_view(view, view["extensions"][compression].object(), compression);
+        } else if (!has_data(file_, buffer)) {
             view.refuse("buffer {} has no data", buffer);
         }
         if (view.has("byteStride")) {
@@ -161,10 +159,9 @@ class Checker {
     }
 
     // EXT_meshopt_compression: what the decoder takes for granted, and what its data may grow to.
-    void compressed_view(const JsonValue& view, const JsonValue& in) {
+    void compressed_view(const JsonValue& view, const JsonValue& in, const char* compression) {
         const std::size_t buffer = part_of_buffer(in);
-        if (is_fallback_buffer(file_.json["buffers"][buffer]))
-            in["buffer"].refuse("buffer {} has no data", buffer);
+        if (!has_data(file_, buffer)) in["buffer"].refuse("buffer {} has no data", buffer);
         const std::string mode = in["mode"].one_of({"ATTRIBUTES", "TRIANGLES", "INDICES"});
         const std::string filter =
             in.has("filter")
@@ -294,19 +291,22 @@ class Checker {
     }
 
     void image(const JsonValue& image, std::size_t) {
-        if (image.has("uri") == image.has("bufferView"))
-            image.refuse("has not one of 'uri' and 'bufferView'");
+        if (image.has("uri") && image.has("bufferView"))
+            image.refuse("has both 'uri' and 'bufferView'");
         if (image.has("uri")) uri(image["uri"], false);
         if (!image.has("bufferView")) return;
         const std::size_t view = image["bufferView"].index(count("bufferViews"), "bufferView");
-        const JsonValue in = root_["bufferViews"].at(view);
-        if (in.has("extensions") && in["extensions"].object().has(compression))
+        if (compression_of(file_.json["bufferViews"][view]) != nullptr)
             image["bufferView"].refuse("bufferView {} is compressed, as no image can be", view);
     }
 
-    void texture(const JsonValue& texture, std::size_t) {
-        optional_index(texture, "source", "images", "image");
+    void sampler_of(const JsonValue& texture, std::size_t) {
         optional_index(texture, "sampler", "samplers", "sampler");
+    }
+
+    // Of a texture that is rendered: others may name what is not there.
+    void texture(const JsonValue& texture) {
+        optional_index(texture, "source", "images", "image");
         if (!texture.has("extensions")) return;
         const JsonValue extensions = texture["extensions"].object();
         if (extensions.has("EXT_texture_webp"))
@@ -332,7 +332,7 @@ class Checker {
     void texture_info(const JsonValue& object, const char* key) {
         if (!object.has(key)) return;
         const JsonValue info = object[key].object();
-        (void)info["index"].index(count("textures"), "texture");
+        texture(root_["textures"].at(info["index"].index(count("textures"), "texture")));
         texture_coordinates(info);
         if (!info.has("extensions")) return;
         const JsonValue extensions = info["extensions"].object();
@@ -357,13 +357,19 @@ class Checker {
             texture_info(material, key);
         if (material.has("normalTexture") && material["normalTexture"].has("scale"))
             (void)material["normalTexture"]["scale"].number();
-        if (material.has("emissiveFactor")) material["emissiveFactor"].colors(3);
+        if (material.has("emissiveFactor")) {
+            material["emissiveFactor"].numbers(3);
+            for (std::size_t i = 0; i < 3; ++i)
+                (void)material["emissiveFactor"].at(i).at_least_zero();
+        }
         if (material.has("doubleSided")) material["doubleSided"].boolean();
         if (material.has("alphaMode"))
             (void)material["alphaMode"].one_of({"OPAQUE", "MASK", "BLEND"});
         if (material.has("alphaCutoff")) (void)material["alphaCutoff"].at_least_zero();
-        if (!material.has("extensions")) return;
-        const JsonValue extensions = material["extensions"].object();
+        if (material.has("extensions")) material_extensions(material["extensions"].object());
+    }
+
+    void material_extensions(const JsonValue& extensions) {
         if (extensions.has("KHR_materials_emissive_strength")) {
             const JsonValue strength = extensions["KHR_materials_emissive_strength"].object();
             if (strength.has("emissiveStrength"))
@@ -385,6 +391,14 @@ class Checker {
             texture_info(specular, "specularTexture");
             texture_info(specular, "specularColorTexture");
         }
+        if (extensions.has("KHR_materials_pbrSpecularGlossiness")) {
+            const JsonValue in = extensions["KHR_materials_pbrSpecularGlossiness"].object();
+            if (in.has("diffuseFactor")) in["diffuseFactor"].colors(4);
+            if (in.has("specularFactor")) in["specularFactor"].colors(3);
+            if (in.has("glossinessFactor")) (void)in["glossinessFactor"].within(0, 1);
+            texture_info(in, "diffuseTexture");
+            texture_info(in, "specularGlossinessTexture");
+        }
     }
 
     void mesh(const JsonValue& mesh, std::size_t) {
@@ -403,11 +417,32 @@ class Checker {
             if (primitive.has("extensions") &&
                 primitive["extensions"].object().has(draco_extension))
                 draco(primitive, primitive["extensions"][draco_extension].object());
+            if (primitive.has("extensions") && primitive["extensions"].object().has(variants))
+                mappings(primitive["extensions"][variants].object());
             if (!primitive.has("targets")) continue;
             const JsonValue targets = primitive["targets"].array();
             for (std::size_t t = 0; t < targets.size(); ++t)
                 for (const std::string& name : targets.at(t).object().keys())
                     (void)targets.at(t)[name.c_str()].index(count("accessors"), "accessor");
+        }
+    }
+
+    // KHR_materials_variants: the variants, and a primitive's materials for them.
+    void variant_names() {
+        if (!root_.has("extensions") || !root_["extensions"].object().has(variants)) return;
+        const JsonValue names = root_["extensions"][variants].object()["variants"].array();
+        for (std::size_t i = 0; i < names.size(); ++i) (void)names.at(i).object()["name"].string();
+        variant_count_ = names.size();
+    }
+
+    void mappings(const JsonValue& in) {
+        const JsonValue mappings = in["mappings"].array();
+        for (std::size_t i = 0; i < mappings.size(); ++i) {
+            const JsonValue mapping = mappings.at(i).object();
+            (void)mapping["material"].index(count("materials"), "material");
+            const JsonValue chosen = mapping["variants"].array();
+            for (std::size_t v = 0; v < chosen.size(); ++v)
+                (void)chosen.at(v).index(variant_count_, "variant");
         }
     }
 
@@ -463,7 +498,8 @@ class Checker {
             if (lens.has("aspectRatio")) (void)lens["aspectRatio"].positive();
             (void)lens["znear"].positive();
         } else {
-            for (const char* key : {"xmag", "ymag"}) (void)lens[key].positive();
+            for (const char* key : {"xmag", "ymag"})
+                if (lens[key].number() == 0) lens[key].refuse("0 is no size");
             (void)lens["znear"].at_least_zero();
             (void)lens["zfar"].positive();
         }
@@ -528,12 +564,15 @@ class Checker {
             rotation.numbers(4);
             double squared = 0;
             for (std::size_t i = 0; i < 4; ++i) squared += std::pow(rotation.at(i).number(), 2);
-            if (std::abs(squared - 1) > 0.01)
+            // Beyond that it is more likely something else than a rotation printed with few digits.
+            if (std::abs(std::sqrt(squared) - 1) > 0.1)
                 rotation.refuse("{} is not a unit quaternion", rotation.shown());
         }
         if (node.has("weights")) node["weights"].numbers(node["weights"].array().size());
         if (!node.has("extensions")) return;
         const JsonValue extensions = node["extensions"].object();
+        if (extensions.has(visibility) && extensions[visibility].object().has("visible"))
+            extensions[visibility]["visible"].boolean();
         if (extensions.has(lights_extension))
             (void)extensions[lights_extension].object()["light"].index(light_count_, "light");
         if (!extensions.has(instancing)) return;
@@ -544,8 +583,7 @@ class Checker {
 
     // Every node has at most one parent, and none is its own ancestor.
     void hierarchy() {
-        std::vector<std::size_t>& parent = parent_;
-        parent.assign(count("nodes"), none);
+        std::vector<std::size_t> parent(count("nodes"), none);
         for (std::size_t i = 0; i < parent.size(); ++i) {
             const JsonValue node = root_["nodes"].at(i);
             if (!node.has("children")) continue;
@@ -574,14 +612,8 @@ class Checker {
         extras(scene);
         if (!scene.has("nodes")) return;
         const JsonValue nodes = scene["nodes"].array();
-        std::set<std::size_t> seen;
-        for (std::size_t i = 0; i < nodes.size(); ++i) {
-            const std::size_t root = nodes.at(i).index(count("nodes"), "node");
-            if (!seen.insert(root).second) nodes.at(i).refuse("node {} is listed twice", root);
-            if (parent_[root] != none)
-                nodes.at(i).refuse("node {} is no root: it is a child of node {}", root,
-                                   parent_[root]);
-        }
+        for (std::size_t i = 0; i < nodes.size(); ++i)
+            (void)nodes.at(i).index(count("nodes"), "node");
     }
 
     void extras(const JsonValue& scene) {
@@ -596,30 +628,33 @@ class Checker {
     const GltfFile& file_;
     JsonValue root_;
     std::size_t light_count_ = 0;
+    std::size_t variant_count_ = 0;
     std::uint64_t stored_ = 0;        // bytes of buffers
     std::uint64_t decompressed_ = 0;  // bytes, so far
-    std::set<std::string> buffer_files_;
+    std::set<std::filesystem::path> buffer_files_;
     std::set<std::uint64_t> draco_accessors_;
-    std::vector<std::size_t> parent_;  // of each node
 };
 
 }  // namespace
 
-const std::set<std::string>& known_extensions() {
-    static const std::set<std::string> known = {
-        "EXT_meshopt_compression", "EXT_mesh_gpu_instancing", "EXT_texture_webp",
-        draco_extension,           "KHR_lights_punctual",     "KHR_materials_emissive_strength",
-        "KHR_materials_ior",       "KHR_materials_specular",  "KHR_materials_unlit",
-        "KHR_mesh_quantization",   "KHR_texture_transform"};
-    return known;
+constexpr const char* meshopt_extensions[] = {"EXT_meshopt_compression", "KHR_meshopt_compression"};
+
+const char* compression_of(const nlohmann::json& view) {
+    const auto extensions = view.find("extensions");
+    if (extensions == view.end()) return nullptr;
+    for (const char* name : meshopt_extensions)
+        if (extensions->contains(name)) return name;
+    return nullptr;
 }
 
-bool is_fallback_buffer(const nlohmann::json& buffer) {
-    const auto extensions = buffer.find("extensions");
-    if (extensions == buffer.end() || !extensions->is_object()) return false;
-    const auto found = extensions->find("EXT_meshopt_compression");
-    return found != extensions->end() && found->is_object() &&
-           found->value("fallback", nlohmann::json(false)) == true;
+bool has_data(const GltfFile& file, std::size_t index) {
+    const nlohmann::json& buffer = file.json["buffers"][index];
+    for (const char* extension : meshopt_extensions) {
+        const nlohmann::json::json_pointer fallback(
+            fmt::format("/extensions/{}/fallback", extension));
+        if (buffer.contains(fallback) && buffer[fallback] == true) return false;
+    }
+    return buffer.contains("uri") || (index == 0 && file.binary);
 }
 
 void check_gltf(const GltfFile& file) { Checker(file).check(); }

@@ -7,13 +7,16 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <glm/gtx/component_wise.hpp>
 #include <map>
+#include <set>
 
 #include "error.hpp"
 #include "scene/alpha.hpp"
 #include "scene/gltf.hpp"
 #include "scene/gltf_draco.hpp"
+#include "scene/gltf_extensions.hpp"
 #include "scene/gltf_pose.hpp"
 #include "scene/gltf_textures.hpp"
+#include "scene/gltf_uri.hpp"
 
 namespace manylight {
 namespace {
@@ -52,12 +55,14 @@ class Loader {
           pose_(file, model_, accessors_, options.seconds),
           options_(options) {
         scene_.file = file.path;
+        notes_ = file.notes;
         for (const char* kind : {"buffers", "images"})
             if (file.json.contains(kind))
                 for (const nlohmann::json& object : file.json[kind])
                     if (object.contains("uri") &&
                         !object["uri"].get_ref<const std::string&>().starts_with("data:"))
-                        scene_.files.push_back(path_of_uri(file, object["uri"]).string());
+                        scene_.files.push_back(
+                            file_of_uri(file, object["uri"], file.path).string());
     }
 
     Scene load() {
@@ -71,7 +76,7 @@ class Loader {
         check_size();
         coordinate_sets_ =
             load_textures(file_, model_, used_materials(),
-                          most_bytes() - static_cast<std::size_t>(needed_bytes()), scene_);
+                          most_bytes() - static_cast<std::size_t>(needed_bytes()), scene_, notes_);
         limit_reflectance();
         decode_meshes();
         for (const int node : nodes_) visit_node(node);
@@ -166,14 +171,16 @@ class Loader {
                              glm::compMax(rgb), brightest);
     }
 
-    // The direction of a node's axis in the world, unit.
-    glm::dvec3 direction(const glm::dmat4& to_world, const glm::dvec3& axis, int node) const {
+    // The direction of a node's axis in the world, unit; 0 where its scale leaves none.
+    static glm::dvec3 direction(const glm::dmat4& to_world, const glm::dvec3& axis) {
         const glm::dvec3 d = glm::dmat3(to_world) * axis;
         const double length = glm::length(d);
-        if (!(length > 1e-30 && length < 1e30))
-            throw InputError("{}: nodes[{}]: its transform leaves no direction (scale {})",
-                             scene_.file, node, length);
-        return d / length;
+        return length > 1e-30 ? d / length : glm::dvec3(0);
+    }
+
+    // By a scale of 0 on all axes: glTF's way to hide what is at a node.
+    static bool is_hidden(const glm::dmat4& to_world) {
+        return glm::dmat3(to_world) == glm::dmat3(0);
     }
 
     // The nodes of the scene, parents first.
@@ -184,8 +191,6 @@ class Loader {
             roots = scene.nodes;
             if (scene.extras.IsObject() && scene.extras.Has("emitter_points"))
                 scene_.emitter_points = scene.extras.Get("emitter_points").GetNumberAsInt();
-        } else if (!model_.nodes.empty()) {
-            throw InputError("{}: scenes: the file has nodes but no scene", scene_.file);
         }
         std::vector<int> open(roots.rbegin(), roots.rend());
         while (!open.empty()) {
@@ -477,19 +482,26 @@ class Loader {
         if (view.name.empty()) view.name = std::to_string(scene_.views.size());
         view.camera_name = camera.name;
         // Only place and direction count: scale, shear and mirroring are left out.
-        const glm::dvec3 back = direction(to_world, {0, 0, 1}, index);
-        const glm::dvec3 right = glm::cross(direction(to_world, {0, 1, 0}, index), back);
+        const glm::dvec3 back = direction(to_world, {0, 0, 1});
+        const glm::dvec3 right = glm::cross(direction(to_world, {0, 1, 0}), back);
         if (!(glm::length(right) > 1e-6))
-            throw InputError("{}: nodes[{}]: its transform leaves no up direction", scene_.file,
-                             index);
+            return notes_.add(fmt::format("nodes[{}]", index),
+                              "is scaled to 0, which leaves no direction; its camera is left out");
         view.to_world[0] = glm::dvec4(glm::normalize(right), 0);
         view.to_world[1] = glm::dvec4(glm::cross(back, glm::normalize(right)), 0);
         view.to_world[2] = glm::dvec4(back, 0);
         view.to_world[3] = to_world[3];
         view.orthographic = camera.type == "orthographic";
         if (view.orthographic) {
-            view.aspect = camera.orthographic.xmag / camera.orthographic.ymag;
-            view.half_height = camera.orthographic.ymag;
+            const double x = camera.orthographic.xmag;
+            const double y = camera.orthographic.ymag;
+            view.aspect = std::abs(x / y);
+            view.half_height = std::abs(y);
+            if (x < 0) view.to_world[0] = -view.to_world[0];
+            if (y < 0) view.to_world[1] = -view.to_world[1];
+            if (x < 0 || y < 0)
+                notes_.add(fmt::format("cameras[{}]", node.camera),
+                           "has a negative xmag or ymag; its image is mirrored");
         } else {
             view.aspect = std::max(camera.perspective.aspectRatio, 0.0);
             view.half_height = std::tan(camera.perspective.yfov / 2);
@@ -506,8 +518,11 @@ class Loader {
         check_brightness(color,
                          fmt::format("KHR_lights_punctual.lights[{}]: color x intensity{}", index,
                                      options_.lamp_scale == 1 ? "" : " x --lamp-scale"));
-        const glm::dvec3 shines =
-            in.type == "point" ? glm::dvec3(0) : direction(to_world, {0, 0, -1}, node);
+        const bool is_point = in.type == "point";
+        const glm::dvec3 shines = is_point ? glm::dvec3(0) : direction(to_world, {0, 0, -1});
+        if (is_hidden(to_world) || (!is_point && shines == glm::dvec3(0)))
+            return notes_.add(fmt::format("nodes[{}]", node),
+                              "is scaled to 0; its light is hidden");
         const auto position = glm::vec3(glm::dvec3(to_world[3]));
         Light light{float4(position, LIGHT_POINT), float4(glm::vec3(shines), in.range), float4(0),
                     float4(color, 0)};
@@ -671,9 +686,9 @@ class Loader {
             std::vector<glm::vec2>& out = scene_.coordinates[set];
             if (!primitive.attributes.contains(name)) {
                 if (needs_coordinates(material, set))
-                    throw InputError(
-                        "{}: {}: its material {} has a texture at {}, which is missing",
-                        scene_.file, where, material, name);
+                    notes_.add(where, fmt::format("lacks {}, where its material has a texture; "
+                                                  "0 0 is taken at all vertices",
+                                                  name));
                 out.resize(out.size() + count, glm::vec2(0));
                 continue;
             }
@@ -770,15 +785,22 @@ class Loader {
     }
 
     void note_what_is_not_rendered() {
+        scene_.warnings = notes_.lines(scene_.file);
+        const std::vector<std::string> more = accessors_.notes().lines(scene_.file);
+        scene_.warnings.insert(scene_.warnings.end(), more.begin(), more.end());
         if (pose_.is_at_rest())
             warn(model_.animations.size(),
                  "animations are at rest; --at SECONDS shows a moment of the first");
         warn(lines_and_points_, "primitives are points or lines, which are not rendered");
         warn(without_position_, "primitives have no POSITION and are not rendered");
-        for (const std::string& name : model_.extensionsUsed)
-            if (!known_extensions().contains(name))
+        std::set<std::string> names(model_.extensionsUsed.begin(), model_.extensionsUsed.end());
+        names.insert(model_.extensionsRequired.begin(), model_.extensionsRequired.end());
+        for (const std::string& name : names) {
+            const Extension kind = extension_kind(name);
+            if (kind != Extension::rendered && kind != Extension::silent)
                 scene_.warnings.push_back(
                     fmt::format("{}: extension {} is not rendered", scene_.file, name));
+        }
     }
 
     const GltfFile& file_;
@@ -787,6 +809,7 @@ class Loader {
     Pose pose_;
     LoadOptions options_;
     Scene scene_;
+    Notes notes_;
     std::vector<int> nodes_;
     std::vector<unsigned> coordinate_sets_;  // [set of Scene::coordinates] n of TEXCOORD_n
     std::map<int, glm::dvec3> centres_;      // of shared meshes that have instances
@@ -805,8 +828,9 @@ class Loader {
 }  // namespace
 
 Scene load_scene(const std::string& path, const LoadOptions& options) {
-    const GltfFile file = read_gltf(path);
+    GltfFile file = read_gltf(path);
     check_gltf(file);
+    mend_gltf(file, options.variant);
     return Loader(file, options).load();
 }
 

@@ -7,86 +7,67 @@
 #include "scene/gltf_parse.hpp"
 
 #include <algorithm>
-#include <cstring>
 #include <filesystem>
 
 #include "error.hpp"
+#include "scene/gltf_uri.hpp"
 
 namespace manylight {
 namespace {
 
-// The library refuses images in data URIs of types that it does not know, such as WebP, and reads
-// whole those beside the file; they are not its business.
-bool has_images_by_name(const nlohmann::json& json) {
-    return json.contains("images") &&
-           std::ranges::any_of(json["images"],
-                               [](const nlohmann::json& image) { return image.contains("uri"); });
-}
+using nlohmann::json;
 
-bool uri_has_plus(const nlohmann::json& buffer) {
-    return buffer.contains("uri") &&
-           !buffer["uri"].get_ref<const std::string&>().starts_with("data:") &&
-           buffer["uri"].get_ref<const std::string&>().find('+') != std::string::npos;
-}
+// Accessors whose elements are compressed with their primitive (KHR_draco_mesh_compression), or 0.
+bool lacks_view(const json& accessor) { return !accessor.contains("bufferView"); }
 
-// The library takes a plus for a blank.
-bool any_uri_has_plus(const GltfFile& file) {
-    return file.json.contains("buffers") &&
-           std::ranges::any_of(file.json["buffers"],
-                               [](const nlohmann::json& buffer) { return uri_has_plus(buffer); });
-}
-
-void escape_plus(std::string& uri) {
-    for (std::size_t at = 0; (at = uri.find('+', at)) != std::string::npos;)
-        uri.replace(at, 1, "%2B");
-}
-
-// Buffers that only say how large others are when decompressed (EXT_meshopt_compression).
-bool has_fallback_buffers(const GltfFile& file) {
-    return file.json.contains("buffers") &&
-           std::ranges::any_of(file.json["buffers"], is_fallback_buffer);
-}
-
-// Accessors whose elements are compressed with their primitive (KHR_draco_mesh_compression).
-bool lacks_view(const nlohmann::json& accessor) { return !accessor.contains("bufferView"); }
-
-bool has_accessors_without_view(const GltfFile& file) {
-    return file.json.contains("accessors") && file.json.contains("bufferViews") &&
-           std::ranges::any_of(file.json["accessors"], lacks_view);
-}
-
-// The file without what the library refuses: indices, for one, need a view.
-std::vector<unsigned char> without_refused(const GltfFile& file) {
-    nlohmann::json json = file.json;
-    json.erase("images");
-    if (json.contains("buffers")) {
-        for (nlohmann::json& buffer : json["buffers"])
-            if (is_fallback_buffer(buffer))
-                buffer = {{"byteLength", 1}, {"uri", "data:application/octet-stream;base64,AA=="}};
-            else if (uri_has_plus(buffer))
-                escape_plus(buffer["uri"].get_ref<std::string&>());
-    }
-    if (has_accessors_without_view(file))
-        for (nlohmann::json& accessor : json["accessors"])
+// The file without its data, which are not the library's business, and without what it refuses:
+// indices, for one, need a view.
+std::string without_data(const GltfFile& file) {
+    json out = json::object();
+    for (const auto& [key, value] : file.json.items())
+        if (key != "images" && key != "buffers") out[key] = value;
+    if (file.json.contains("buffers"))
+        for (std::size_t i = 0; i < file.json["buffers"].size(); ++i)
+            out["buffers"].push_back(
+                {{"byteLength", 1}, {"uri", "data:application/octet-stream;base64,AA=="}});
+    if (out.contains("accessors") && out.contains("bufferViews"))
+        for (json& accessor : out["accessors"])
             if (lacks_view(accessor)) accessor["bufferView"] = 0;
-    std::string text = json.dump();
-    if (!file.is_binary) return {text.begin(), text.end()};
-    text.resize((text.size() + 3) / 4 * 4, ' ');
-    std::uint32_t old_length = 0;
-    std::memcpy(&old_length, file.bytes.data() + 12, 4);
-    std::vector<unsigned char> out(file.bytes.begin(), file.bytes.begin() + 20);
-    out.insert(out.end(), text.begin(), text.end());
-    out.insert(out.end(), file.bytes.begin() + 20 + old_length, file.bytes.end());
-    const auto length = static_cast<std::uint32_t>(text.size());
-    const auto total = static_cast<std::uint32_t>(out.size());
-    std::memcpy(out.data() + 8, &total, 4);
-    std::memcpy(out.data() + 12, &length, 4);
-    return out;
+    return out.dump();
+}
+
+std::vector<unsigned char> bytes_of_buffer(const GltfFile& file, std::size_t index) {
+    if (!has_data(file, index)) return {};
+    const json& buffer = file.json["buffers"][index];
+    const std::string where = fmt::format("{}: buffers[{}]", file.path, index);
+    const auto length = buffer["byteLength"].get<std::size_t>();
+    std::vector<unsigned char> bytes =
+        buffer.contains("uri")
+            ? bytes_of_uri(file, buffer["uri"].get_ref<const std::string&>(), where + ".uri")
+            : *file.binary;
+    if (bytes.size() < length)
+        throw InputError("{}.byteLength: {} bytes, but there are {}", where, length, bytes.size());
+    bytes.resize(length);
+    return bytes;
 }
 
 bool skip_image(tinygltf::Image*, const int, std::string*, std::string*, int, int,
                 const unsigned char*, int, void*) {
     return true;
+}
+
+// The library decodes URIs otherwise than we do: these keep it within the scene's folder.
+bool is_within(const std::string& file, void* data) {
+    namespace fs = std::filesystem;
+    const auto& folder = *static_cast<const fs::path*>(data);
+    std::error_code error;
+    const fs::path target = fs::canonical(file.c_str(), error);
+    return !error && std::ranges::mismatch(folder, target).in1 == folder.end();
+}
+
+bool read_within(std::vector<unsigned char>* out, std::string* why, const std::string& file,
+                 void* folder) {
+    return is_within(file, folder) && tinygltf::ReadWholeFile(out, why, file, nullptr);
 }
 
 }  // namespace
@@ -97,19 +78,9 @@ tinygltf::Model parse_gltf(const GltfFile& file) {
     tinygltf::Model model;
     std::string error;
     std::string warning;
-    std::vector<unsigned char> changed;
-    if (has_images_by_name(file.json) || has_fallback_buffers(file) || any_uri_has_plus(file) ||
-        has_accessors_without_view(file))
-        changed = without_refused(file);
-    const std::vector<unsigned char>& bytes = changed.empty() ? file.bytes : changed;
-    const auto length = static_cast<unsigned>(bytes.size());
-    const std::string folder = std::filesystem::absolute(file.path).parent_path().string();
-    const bool parsed =
-        file.is_binary
-            ? parser.LoadBinaryFromMemory(&model, &error, &warning, bytes.data(), length, folder)
-            : parser.LoadASCIIFromString(&model, &error, &warning,
-                                         reinterpret_cast<const char*>(bytes.data()), length,
-                                         folder);
+    const std::string text = without_data(file);
+    const bool parsed = parser.LoadASCIIFromString(&model, &error, &warning, text.data(),
+                                                   static_cast<unsigned>(text.size()), "");
     if (!parsed) {
         while (!error.empty() && error.back() == '\n') error.pop_back();
         std::ranges::replace(error, '\n', ' ');
@@ -117,12 +88,17 @@ tinygltf::Model parse_gltf(const GltfFile& file) {
     }
     for (std::size_t i = 0; i < model.accessors.size(); ++i)
         if (lacks_view(file.json["accessors"][i])) model.accessors[i].bufferView = -1;
+    for (std::size_t i = 0; i < model.buffers.size(); ++i)
+        model.buffers[i].data = bytes_of_buffer(file, i);
     return model;
 }
 
 void parse_alone(const std::string& path) {
     tinygltf::TinyGLTF parser;
     parser.SetImageLoader(skip_image, nullptr);
+    std::filesystem::path folder =
+        std::filesystem::canonical(std::filesystem::absolute(path).parent_path());
+    parser.SetFsCallbacks({is_within, tinygltf::ExpandFilePath, read_within, nullptr, &folder});
     tinygltf::Model model;
     std::string error;
     std::string warning;

@@ -2,6 +2,7 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <span>
 
 #include "error.hpp"
 #include "scene/gltf.hpp"
@@ -11,63 +12,74 @@ namespace {
 
 constexpr int deepest_nesting = 128;  // 20,000 nested brackets overflow the parser's stack
 
-std::vector<unsigned char> read_file(const std::string& path) {
-    namespace fs = std::filesystem;
-    std::error_code error;
-    const fs::file_status status = fs::status(path, error);
-    if (!fs::exists(status)) throw InputError("{}: no such file", path);
-    if (!fs::is_regular_file(status)) throw InputError("{}: not a regular file", path);
-    const std::uintmax_t size = fs::file_size(path, error);
-    if (error) throw InputError("{}: {}", path, error.message());
-    // glb states its length in 32 bits, and the parser takes no more.
-    if (size > 0xffffffffu)
-        throw InputError("{}: {} bytes; a scene file has at most 4 GiB", path, size);
-    std::vector<unsigned char> bytes(size);
-    std::ifstream stream(path, std::ios::binary);
-    if (!stream.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(size)))
-        throw InputError("{}: cannot be read: {}", path, std::strerror(errno));
-    return bytes;
-}
-
 std::uint32_t word(const std::vector<unsigned char>& bytes, std::size_t offset) {
     std::uint32_t value;
     std::memcpy(&value, bytes.data() + offset, 4);
     return value;
 }
 
-// The JSON chunk of a .glb file; checks the header and every chunk's length.
-std::string_view find_json_chunk(const GltfFile& file) {
-    const auto& bytes = file.bytes;
-    constexpr std::uint32_t json_type = 0x4e4f534a;
-    constexpr std::uint32_t binary_type = 0x004e4942;
+struct Chunk {
+    std::uint32_t type;
+    std::span<const unsigned char> bytes;
+};
+
+// The chunk of a .glb file that starts at `offset`; checks its length.
+Chunk chunk_at(const std::string& path, const std::vector<unsigned char>& bytes, std::size_t offset,
+               int number, Notes& notes) {
+    const std::size_t left = bytes.size() - offset;
+    if (left < 8) throw InputError("{}: glb chunk {}: its header is cut off", path, number);
+    const std::uint32_t length = word(bytes, offset);
+    if (length > left - 8)
+        throw InputError("{}: glb chunk {}: length {}, but {} bytes are left", path, number, length,
+                         left - 8);
+    if (length % 4 != 0)
+        notes.add(fmt::format("glb chunk {}", number),
+                  "has a length that is no multiple of 4; it is read as long as it says");
+    return {word(bytes, offset + 4), std::span(bytes).subspan(offset + 8, length)};
+}
+
+constexpr std::uint32_t json_type = 0x4e4f534a;
+constexpr std::uint32_t binary_type = 0x004e4942;
+
+// Where the chunk starts that follows one of `length` bytes at `begin`: right behind it, or behind
+// padding that its length does not count.
+std::size_t next_chunk(const std::vector<unsigned char>& bytes, std::size_t begin,
+                       std::size_t length) {
+    const std::size_t end = begin + length;
+    const std::size_t padded = begin + (length + 3) / 4 * 4;
+    const auto is_binary = [&](std::size_t at) {
+        return at + 8 <= bytes.size() && word(bytes, at + 4) == binary_type;
+    };
+    const bool is_last = bytes.size() == padded;
+    return is_last || (!is_binary(end) && is_binary(padded)) ? padded : end;
+}
+
+// The JSON chunk of a .glb file; checks the header and every chunk, and keeps the BIN chunk.
+std::string_view find_chunks(const std::vector<unsigned char>& bytes, GltfFile& file) {
+    constexpr std::uint32_t types[] = {json_type, binary_type};
+    constexpr const char* names[] = {"JSON", "BIN"};
     if (bytes.size() < 20)
         throw InputError("{}: glb header: the file has {} bytes, fewer than 20", file.path,
                          bytes.size());
     if (word(bytes, 4) != 2)
-        throw InputError("{}: glb header: version {} is not 2", file.path, word(bytes, 4));
+        throw InputError(
+            "{}: glb header: version {} is not 2; gltf-pipeline -i OLD -o NEW.glb converts glTF "
+            "1.0",
+            file.path, word(bytes, 4));
     if (word(bytes, 8) != bytes.size())
         throw InputError("{}: glb header: length {} is not the file's, {}", file.path,
                          word(bytes, 8), bytes.size());
     std::string_view json;
     std::size_t offset = 12;
-    for (int chunk = 0; offset < bytes.size(); ++chunk) {
-        if (bytes.size() - offset < 8)
-            throw InputError("{}: glb chunk {}: its header is cut off", file.path, chunk);
-        const std::uint32_t length = word(bytes, offset);
-        const std::uint32_t type = word(bytes, offset + 4);
-        offset += 8;
-        if (length > bytes.size() - offset)
-            throw InputError("{}: glb chunk {}: length {}, but {} bytes are left", file.path, chunk,
-                             length, bytes.size() - offset);
-        if (chunk == 0 && type != json_type)
-            throw InputError("{}: glb chunk 0: type {:#010x} is not JSON", file.path, type);
-        if (chunk == 1 && type != binary_type)
-            throw InputError("{}: glb chunk 1: type {:#010x} is not BIN", file.path, type);
-        if (length % 4 != 0)
-            throw InputError("{}: glb chunk {}: length {} is no multiple of 4", file.path, chunk,
-                             length);
-        if (chunk == 0) json = {reinterpret_cast<const char*>(bytes.data()) + offset, length};
-        offset += length;
+    for (int number = 0; offset < bytes.size(); ++number) {
+        const Chunk chunk = chunk_at(file.path, bytes, offset, number, file.notes);
+        if (number < 2 && chunk.type != types[number])
+            throw InputError("{}: glb chunk {}: type {:#010x} is not {}", file.path, number,
+                             chunk.type, names[number]);
+        if (number == 0)
+            json = {reinterpret_cast<const char*>(chunk.bytes.data()), chunk.bytes.size()};
+        if (number == 1) file.binary.emplace(chunk.bytes.begin(), chunk.bytes.end());
+        offset = next_chunk(bytes, offset + 8, chunk.bytes.size());
     }
     return json;
 }
@@ -96,41 +108,32 @@ void check_nesting(const GltfFile& file, std::string_view text) {
 
 }  // namespace
 
-std::filesystem::path path_of_uri(const GltfFile& file, const std::string& uri) {
-    std::string path;
-    for (std::size_t i = 0; i < uri.size(); ++i) {
-        if (uri[i] != '%' || i + 2 >= uri.size() || !std::isxdigit(uri[i + 1]) ||
-            !std::isxdigit(uri[i + 2])) {
-            path += uri[i];
-            continue;
-        }
-        path += static_cast<char>(std::stoi(uri.substr(i + 1, 2), nullptr, 16));
-        i += 2;
-    }
+std::vector<unsigned char> read_file(const std::string& path) {
     namespace fs = std::filesystem;
     std::error_code error;
-    const fs::path folder = fs::absolute(file.path, error).parent_path();
-    return path.empty() ? fs::path() : fs::weakly_canonical(folder / path, error);
-}
-
-std::vector<unsigned char> read_beside(const GltfFile& file, const std::string& uri,
-                                       const std::string& where) {
-    const std::filesystem::path path = path_of_uri(file, uri);
-    std::error_code error;
-    if (!std::filesystem::is_regular_file(path, error))
-        throw InputError("{}: '{}': no such file beside the scene", where, uri);
-    return read_file(path.string());
+    const fs::file_status status = fs::status(path, error);
+    if (!fs::exists(status)) throw InputError("{}: no such file", path);
+    if (!fs::is_regular_file(status)) throw InputError("{}: not a regular file", path);
+    const std::uintmax_t size = fs::file_size(path, error);
+    if (error) throw InputError("{}: {}", path, error.message());
+    // glb states its length in 32 bits, and the parser takes no more.
+    if (size > 0xffffffffu)
+        throw InputError("{}: {} bytes; a scene file has at most 4 GiB", path, size);
+    std::vector<unsigned char> bytes(size);
+    std::ifstream stream(path, std::ios::binary);
+    if (!stream.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(size)))
+        throw InputError("{}: cannot be read: {}", path, std::strerror(errno));
+    return bytes;
 }
 
 GltfFile read_gltf(const std::string& path) {
     GltfFile file;
     file.path = path;
-    file.bytes = read_file(path);
-    file.is_binary = file.bytes.size() >= 4 && std::memcmp(file.bytes.data(), "glTF", 4) == 0;
+    const std::vector<unsigned char> bytes = read_file(path);
+    const bool is_binary = bytes.size() >= 4 && std::memcmp(bytes.data(), "glTF", 4) == 0;
     const std::string_view text =
-        file.is_binary
-            ? find_json_chunk(file)
-            : std::string_view(reinterpret_cast<const char*>(file.bytes.data()), file.bytes.size());
+        is_binary ? find_chunks(bytes, file)
+                  : std::string_view(reinterpret_cast<const char*>(bytes.data()), bytes.size());
     check_nesting(file, text);
     try {
         file.json = nlohmann::json::parse(text);

@@ -2,11 +2,13 @@
 #include "scene/gltf_textures.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <map>
 #include <span>
 
 #include "error.hpp"
+#include "scene/gltf_uri.hpp"
 #include "scene/textures.hpp"
 
 namespace manylight {
@@ -24,8 +26,8 @@ const json& member(const json& object, const char* key) {
 class Textures {
   public:
     Textures(const GltfFile& file, const tinygltf::Model& model, std::size_t most_bytes,
-             Scene& scene)
-        : file_(file), model_(model), most_bytes_(most_bytes), scene_(scene) {}
+             Scene& scene, Notes& notes)
+        : file_(file), model_(model), most_bytes_(most_bytes), scene_(scene), notes_(notes) {}
 
     void add_material(const json& material, std::size_t index) {
         const json& pbr = member(material, "pbrMetallicRoughness");
@@ -36,7 +38,11 @@ class Textures {
         add_map(index, MAP_NORMAL, member(material, "normalTexture"), {});
         if (scene_.materials[index].unlit) return;
         add_map(index, MAP_EMISSION, member(material, "emissiveTexture"), {.color = true});
-        const json& specular = member(member(material, "extensions"), "KHR_materials_specular");
+        const json& extensions = member(material, "extensions");
+        const json& glossy = member(extensions, "KHR_materials_pbrSpecularGlossiness");
+        add_map(index, MAP_METALLIC_ROUGHNESS, member(glossy, "specularGlossinessTexture"),
+                {.glossiness = glossy.value("glossinessFactor", 1.f)});
+        const json& specular = member(extensions, "KHR_materials_specular");
         add_map(index, MAP_SPECULAR, member(specular, "specularTexture"), {});
         add_map(index, MAP_SPECULAR_COLOR, member(specular, "specularColorTexture"),
                 {.color = true});
@@ -49,7 +55,8 @@ class Textures {
         if (!info.contains("index")) return;
         const json& texture = file_.json["textures"][info["index"].get<std::size_t>()];
         const std::optional<std::size_t> image = image_of(texture);
-        if (!image) return;
+        if (!image) notes_.add(fmt::format("textures[{}]", info["index"].dump()), without_image);
+        if (!image || !is_there(*image)) return stand_in(scene_.materials[material], kind);
         if (scene_.maps.empty()) {
             TextureMap none{};
             none.texture = NO_TEXTURE;
@@ -62,6 +69,29 @@ class Textures {
         map.scale = info.value("scale", 1.f);
         map.texture = static_cast<uint>(scene_.textures.size());
         scene_.textures.push_back(with_sampler(texels_of(*image, meaning), texture));
+    }
+
+    // Of what says how much a surface gives or is, nothing; otherwise the material's own factor.
+    static void stand_in(Material& material, MapKind kind) {
+        if (kind == MAP_EMISSION) material.emission = float4(glm::vec3(0), material.emission.w);
+        if (kind == MAP_METALLIC_ROUGHNESS) material.base_color.w = 0;
+    }
+
+    [[nodiscard]] bool is_there(std::size_t image) const {
+        const json& object = file_.json["images"][image];
+        const std::string place = fmt::format("images[{}]", image);
+        if (object.contains("bufferView")) return true;
+        if (!object.contains("uri")) {
+            notes_.add(place, without_image);
+            return false;
+        }
+        const std::string& uri = object["uri"].get_ref<const std::string&>();
+        std::error_code error;
+        if (uri.starts_with("data:") ||
+            std::filesystem::exists(file_of_uri(file_, uri, place), error))
+            return true;
+        notes_.add(fmt::format("{}.uri: '{}'", place, uri), without_file);
+        return false;
     }
 
     // Scaled, then turned, counter-clockwise where v points down as images do, then moved: as
@@ -122,10 +152,24 @@ class Textures {
         if (known != texels_.end()) return known->second;
         const std::string where = fmt::format("{}: images[{}]", file_.path, image);
         const std::vector<unsigned char> bytes = bytes_of(image, where);
-        const DecodedImage decoded = decode_image(bytes, where);
+        DecodedImage decoded = decode_image(bytes, where);
+        if (meaning.glossiness >= 0) {
+            make_roughness(decoded.bytes, 255, meaning.glossiness);
+            make_roughness(decoded.floats, 1, meaning.glossiness);
+        }
         refuse_beyond_memory(decoded, where);
         const Texture texture = add_texels(scene_, decoded, meaning, where);
         return texels_.emplace(key, texture).first->second;
+    }
+
+    // Roughness to G, of no metal, from glossiness in A.
+    template <class T>
+    static void make_roughness(std::vector<T>& texels, float one, float factor) {
+        for (std::size_t i = 0; i < texels.size(); i += 4) {
+            const float roughness = one - factor * static_cast<float>(texels[i + 3]);
+            texels[i + 1] = static_cast<T>(one == 1 ? roughness : std::round(roughness));
+            texels[i + 2] = 0;
+        }
     }
 
     // A few kilobytes may hold an image of any size, and a file any number of them.
@@ -150,22 +194,19 @@ class Textures {
             return {begin, begin + view.byteLength};
         }
         const std::string& uri = object["uri"].get_ref<const std::string&>();
-        if (uri.starts_with("data:")) {
-            std::vector<unsigned char> bytes;
-            std::string type;
-            const std::string plain = "data:application/octet-stream;base64,";
-            if (!tinygltf::DecodeDataURI(&bytes, type, plain + uri.substr(uri.find(',') + 1), 0,
-                                         false))
-                throw InputError("{}.uri: '{}...' holds no base64 data", where, uri.substr(0, 40));
-            return bytes;
-        }
-        return read_beside(file_, uri, where + ".uri");
+        return bytes_of_uri(file_, uri, where + ".uri");
     }
+
+    static constexpr const char* without_image =
+        "has no image that is read; it is left out (emission and metal are 0)";
+    static constexpr const char* without_file =
+        "is no file beside the scene; it is left out (emission and metal are 0)";
 
     const GltfFile& file_;
     const tinygltf::Model& model_;
     std::size_t most_bytes_;
     Scene& scene_;
+    Notes& notes_;
     std::vector<unsigned> sets_;
     std::map<std::pair<std::size_t, TexelMeaning>, Texture> texels_;
 };
@@ -174,8 +215,8 @@ class Textures {
 
 std::vector<unsigned> load_textures(const GltfFile& file, const tinygltf::Model& model,
                                     const std::vector<bool>& used, std::size_t most_bytes,
-                                    Scene& scene) {
-    Textures textures(file, model, most_bytes, scene);
+                                    Scene& scene, Notes& notes) {
+    Textures textures(file, model, most_bytes, scene, notes);
     const json& materials = member(file.json, "materials");
     for (std::size_t i = 0; i < materials.size(); ++i)
         if (used[i]) textures.add_material(materials[i], i);

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "error.hpp"
+#include "print.hpp"
 
 namespace manylight {
 
@@ -19,10 +20,14 @@ class JsonValue {
     JsonValue(const std::string& file, std::string path, const nlohmann::json& value)
         : file_(&file), path_(std::move(path)), json_(&value) {}
 
+    /// The file and the path, as messages start.
+    [[nodiscard]] std::string where() const {
+        return path_.empty() ? *file_ : fmt::format("{}: {}", *file_, path_);
+    }
     template <class... Args>
     [[noreturn]] void refuse(fmt::format_string<Args...> format, Args&&... args) const {
-        throw InputError("{}: {}: {}", *file_, path_,
-                         fmt::format(format, std::forward<Args>(args)...));
+        throw InputError("{}: {}", where(),
+                         escaped(fmt::format(format, std::forward<Args>(args)...)));
     }
     /// The value as a message shows it.
     [[nodiscard]] std::string shown() const {

@@ -22,7 +22,7 @@ namespace manylight {
 struct View {
     std::string name;          // the node's, or else the camera's, or else its number
     std::string camera_name;   // the camera's own
-    glm::dmat4 to_world{1.0};  // rigid; looks along its -z
+    glm::dmat4 to_world{1.0};  // rigid, or mirrored; looks along its -z
     bool orthographic = false;
     double aspect = 0;       // width / height; 0 where the file leaves it to the image
     double half_height = 0;  // of the image: m if orthographic, otherwise tan(yfov / 2)

@@ -11,6 +11,9 @@ namespace manylight {
 struct TexelMeaning {
     bool color = false;     // RGB are colours, encoded as sRGB unless the file says otherwise
     bool weighted = false;  // ... and count by alpha where texels are averaged
+    // The factor of the glossiness in A, of which they are to say roughness and metal as glTF does;
+    // negative: none.
+    float glossiness = -1;
     auto operator<=>(const TexelMeaning&) const = default;
 };
 

@@ -29,7 +29,8 @@ const std::filesystem::path& folder() {
         const std::filesystem::path out =
             std::filesystem::temp_directory_path() / ("manylight-fuzz-" + std::to_string(getpid()));
         std::filesystem::create_directory(out);
-        std::ofstream(out / "data.bin", std::ios::binary) << std::string(200, '\1');
+        for (const char* name : {"data.bin", "more.bin"})
+            std::ofstream(out / name, std::ios::binary) << std::string(200, '\1');
         std::atexit([] { std::filesystem::remove_all(folder()); });
         return out;
     }();
@@ -142,6 +143,9 @@ json new_value(std::mt19937& random) {
                                   "BLEND",
                                   "data.bin",
                                   "..",
+                                  "%2e%2e/data.bin",
+                                  "data%zz.bin",
+                                  "./data.bin",
                                   "data:application/octet-stream;base64,AAAA",
                                   "ATTRIBUTES",
                                   "TRIANGLES",
@@ -216,6 +220,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     try {
         manylight::Scene scene = manylight::load_scene(
             file.string(), {.seconds = chance % 2 ? std::optional(0.5) : std::nullopt,
+                            .variant = chance % 8 < 2 ? "red" : "",
                             .storage = chance % 4 < 2 ? manylight::MeshStorage::shared
                                                       : manylight::MeshStorage::copied,
                             .most_bytes = std::size_t{1} << 28});

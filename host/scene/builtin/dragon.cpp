@@ -3,6 +3,7 @@
 #include <glm/gtc/constants.hpp>
 
 #include "error.hpp"
+#include "print.hpp"
 #include "scene/builtin/builtin.hpp"
 #include "scene/gltf.hpp"
 #include "scene/scene.hpp"
@@ -54,7 +55,7 @@ Mesh make_knot() {
 // All triangles of a glTF file.
 Mesh read_mesh(const std::string& path) {
     const Scene scene = load_scene(path, {.storage = MeshStorage::copied});
-    for (const std::string& warning : scene.warnings) fmt::print(stderr, "warning: {}\n", warning);
+    for (const std::string& warning : scene.warnings) warn("{}", warning);
     const Bounds bounds = scene.bounds();
     if (scene.triangle_count() == 0 || !(bounds.radius() > 1e-6f * glm::length(bounds.centre())))
         throw InputError("--mesh {}: has no triangles, or none with an extent", path);
