@@ -29,8 +29,7 @@ void set_zero(cl::Kernel& kernel, cl_uint i) {
 }
 
 // Compiles a program's kernels by launching them with nothing to do.
-void compile_program(const cl::Device& device, const json& job) {
-    const cl::Context context(device);
+void compile_program(const cl::Context& context, const cl::Device& device, const json& job) {
     const cl::CommandQueue queue(context, device);
     const cl::Buffer zeros(context, CL_MEM_READ_WRITE, 4096);
     cl::Program program(context, assemble_source(job["file"].get<std::string>()));
@@ -63,7 +62,8 @@ void help(int socket) {
     try {
         const json task = json::parse(read_all(socket));
         const cl::Device device = all_devices().at(task["device"].get<std::size_t>());
-        for (const json& job : task["programs"]) compile_program(device, job);
+        const cl::Context context(device);
+        for (const json& job : task["programs"]) compile_program(context, device, job);
     } catch (const std::exception&) {  // the kernel's own build will say what is wrong
     }
 }
@@ -127,10 +127,11 @@ Compilers::~Compilers() {
     for (const int socket : sockets_) close(socket);
 }
 
-void Compilers::compile(std::size_t device, std::size_t local_size,
-                        const std::vector<std::shared_ptr<Kernel::Built>>& kernels) {
+void Compilers::compile(const std::vector<std::shared_ptr<Kernel::Built>>& kernels) {
+    if (kernels.empty()) return;
+    const Device::Context& context = *kernels.front()->context;
     std::multimap<std::size_t, json, std::greater<>> programs;  // by the size of their sources
-    for (const json& program : programs_of(kernels, local_size))
+    for (const json& program : programs_of(kernels, context.form.local_size))
         programs.emplace(assemble_source(program["file"].get<std::string>()).size(), program);
     // The largest first, each to whom has least; the first share is this process's own.
     std::vector<std::pair<std::size_t, json>> shares(sockets_.size() + 1, {0, json::array()});
@@ -142,12 +143,12 @@ void Compilers::compile(std::size_t device, std::size_t local_size,
     }
     for (std::size_t i = 0; i < sockets_.size(); ++i) {
         const std::string task =
-            json{{"device", device}, {"programs", shares[i + 1].second}}.dump();
+            json{{"device", context.number}, {"programs", shares[i + 1].second}}.dump();
         if (send(sockets_[i], task.data(), task.size(), MSG_NOSIGNAL) < 0) continue;
         shutdown(sockets_[i], SHUT_WR);
     }
     for (const json& program : shares[0].second) try {
-            compile_program(all_devices()[device], program);
+            compile_program(context.context, context.device, program);
         } catch (const cl::Error&) {  // the kernel's own build will say what is wrong
         }
     for (const int socket : sockets_) {

@@ -147,10 +147,9 @@ class Compilers {
     Compilers(const Compilers&) = delete;
     Compilers& operator=(const Compilers&) = delete;
 
-    /// Compiles kernels of a device, by its number in list_devices(), into PoCL's cache. What fails
-    /// is left to fail when it is built.
-    void compile(std::size_t device, std::size_t local_size,
-                 const std::vector<std::shared_ptr<Kernel::Built>>& kernels);
+    /// Compiles kernels of one device into PoCL's cache. What fails is left to fail when it is
+    /// built.
+    void compile(const std::vector<std::shared_ptr<Kernel::Built>>& kernels);
 
   private:
     std::vector<int> sockets_;

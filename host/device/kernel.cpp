@@ -73,7 +73,7 @@ void Device::compile() {
     // Others than PoCL compile programs as they are built, and need not have a cache.
     if (context_->compilers && context_->info.platform == "Portable Computing Language") {
         const auto start = Clock::now();
-        context_->compilers->compile(context_->number, context_->form.local_size, kernels);
+        context_->compilers->compile(kernels);
         context_->compilers.reset();
         context_->compile_seconds += seconds_since(start);
     }
