@@ -32,6 +32,7 @@ struct Device::Context {
     std::map<std::string, double> stage_seconds;
     std::vector<std::pair<std::string, cl::Event>> running;  // stage and event of each launch
     std::map<std::string, cl::Program> programs;             // by file and options
+    std::set<Launched> launched;                             // see Device::take_launched()
 
     unsigned local_size() const { return local_size_of(info); }
     cl::Program& build(std::string_view file, const Defines& defines);
@@ -43,6 +44,7 @@ struct Kernel::Built {
     cl::Kernel kernel;
     std::string stage;
     std::string name;
+    Launched launched;
     std::vector<std::string> parameters;
     std::map<bool, bool> compiled;  // by whether the launch was a small one
 };

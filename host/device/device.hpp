@@ -3,10 +3,12 @@
 // Knows no stage.
 #pragma once
 
+#include <compare>
 #include <cstddef>
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <set>
 #include <span>
 #include <string>
 #include <string_view>
@@ -102,6 +104,15 @@ class Arguments {
 /// Integers that a kernel is compiled with (-D).
 using Defines = std::map<std::string, int>;
 
+/// A kernel that was launched, and how it was built.
+struct Launched {
+    std::string file;  // below kernels/
+    std::string kernel;
+    std::string stage;
+    Defines defines;
+    auto operator<=>(const Launched&) const = default;
+};
+
 /// A kernel of a built program; copies share it.
 class Kernel {
   public:
@@ -165,6 +176,9 @@ class Device {
 
     /// Seconds spent on compiling kernels, those of their first launch included.
     [[nodiscard]] double compile_seconds() const;
+
+    /// The kernels that were launched for the first time since the last call.
+    [[nodiscard]] std::set<Launched> take_launched();
 
     struct Context;  // OpenCL's objects
 

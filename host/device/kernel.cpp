@@ -51,6 +51,7 @@ Kernel Device::kernel(std::string_view file, const std::string& name, const Defi
     built.context = context_;
     built.stage = stage;
     built.name = name;
+    built.launched = {std::string(file), name, stage, defines};
     try {
         built.kernel = cl::Kernel(context_->build(file, defines), name.c_str());
         const auto count = built.kernel.getInfo<CL_KERNEL_NUM_ARGS>();
@@ -101,6 +102,7 @@ void Kernel::launch(std::size_t items, const Arguments& arguments) {
             context.compile_seconds +=
                 seconds_since(start) - (context.stage_seconds[built_->stage] - before);
             compiled = true;
+            context.launched.insert(built_->launched);
         }
     } catch (const cl::Error& error) {
         throw RuntimeError("{}: kernel {}: {}", context.info.name, built_->name, describe(error));
