@@ -1,21 +1,24 @@
 // SPDX-License-Identifier: MIT
 // Closest hits alone, for manylight bench and for tests; rays as in lib/rays.h.
 #include "lib/packet.h"
+#include "lib/rays.h"
 
 // triangles[16 * packet + lane], ~0 where nothing is hit; where something is, the ray's end becomes
-// the hit's t.
+// the hit's t. One packet per work-item.
+#if LANES > 1
 KERNEL void bench_closest_packets(BVH_PARAMETERS, __global const float4* origins,
-                                  __global float16* rays, uint packet_count,
-                                  __global int16* triangles) {
+                                  __global float* rays, uint packet_count,
+                                  __global int* triangles) {
     const uint i = get_global_id(0);
     if (i >= packet_count) return;
-    __global float16* ray = rays + 4 * (ulong)i;
-    Packet packet = make_packet(origins[i].xyz, ray[0], ray[1], ray[2], ray[3]);
-    int16 found;
-    closest_hits(BVH_ARGUMENTS, &packet, &found);
-    triangles[i] = found;
-    ray[3] = packet.end;
+    Packet packet = load_packet(origins, rays, i);
+    int_n found[PARTS];
+    closest_hits(BVH_ARGUMENTS, &packet, found);
+    for (uint part = 0u; part < PARTS; ++part)
+        *(__global int_n*)(triangles + 16u * i + LANES * part) = found[part];
+    store_ends(&packet, rays, i);
 }
+#endif
 
 KERNEL void bench_closest_rays(BVH_PARAMETERS, __global const float4* origins, __global float* rays,
                                uint packet_count, __global uint* triangles) {

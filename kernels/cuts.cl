@@ -2,17 +2,12 @@
 // Stage cuts: for each tile a cut through the light trees, fine where much light may come from, and
 // a first look at what is visible.
 #include "lib/direct.h"
-#include "lib/inverse.h"
 #include "lib/random.h"
 #include "lib/tiles.h"
 #include "shared/adaptive.h"
 #include "shared/light_tree.h"
 
-#define LANES 1
-#define NODES 1
 #include "lib/node_estimate.h"
-#undef NODES
-#undef LANES
 
 // A receiver as lib/node_estimate.h takes it.
 static Points_1 point_of(const Receiver* r) {

@@ -218,27 +218,33 @@ KERNEL void gbuffer_trace_rays(Tiles tiles, Camera camera, uint jitter, uint pix
     write_surface(tiles, camera, surfaces, item, ray, hit.triangle, hit.t, MESH_ARGUMENTS);
 }
 
+#if LANES > 1
 // The same, 16 items (4 x 4 pixels) per work-item; for cameras whose rays have one origin.
 KERNEL void gbuffer_trace_packets(Tiles tiles, Camera camera, uint jitter, uint pixel_sample,
                                   uint seed, BVH_PARAMETERS, MESH_PARAMETERS,
                                   __global Surface* surfaces) {
     const uint first = 16u * (uint)get_global_id(0);
-    float16 x = (float16)(0.0f), y = x, z = x, end = x;
-    for (uint lane = 0u; lane < 16u; ++lane) {
-        if (!item_in_image(tiles, first + lane)) continue;
-        const Ray ray = primary_ray(tiles, first + lane, camera, jitter, pixel_sample, seed);
-        SET_LANE(x, lane, ray.direction.x);
-        SET_LANE(y, lane, ray.direction.y);
-        SET_LANE(z, lane, ray.direction.z);
-        SET_LANE(end, lane, INFINITY);
+    Packet packet;
+    packet.origin = camera.origin.xyz;
+    for (uint i = 0u; i < PARTS; ++i)
+        packet.x[i] = packet.y[i] = packet.z[i] = packet.end[i] = (float_n)(0.0f);
+    for (uint i = 0u; i < 16u; ++i) {
+        if (!item_in_image(tiles, first + i)) continue;
+        const Ray ray = primary_ray(tiles, first + i, camera, jitter, pixel_sample, seed);
+        SET_LANE(packet.x, i, ray.direction.x);
+        SET_LANE(packet.y, i, ray.direction.y);
+        SET_LANE(packet.z, i, ray.direction.z);
+        SET_LANE(packet.end, i, INFINITY);
     }
-    Packet packet = make_packet(camera.origin.xyz, x, y, z, end);
-    int16 triangles;
-    closest_hits(BVH_ARGUMENTS, &packet, &triangles);
-    for (uint lane = 0u; lane < 16u; ++lane) {
-        if (!item_in_image(tiles, first + lane)) continue;
-        const Ray ray = {packet.origin, direction_of(&packet, lane), INFINITY};
-        write_surface(tiles, camera, surfaces, first + lane, ray, (uint)INT_LANE(triangles, lane),
-                      LANE(packet.end, lane), MESH_ARGUMENTS);
+    if (!rays_of(&packet)) return;
+    prepare_packet(&packet);
+    int_n triangles[PARTS];
+    closest_hits(BVH_ARGUMENTS, &packet, triangles);
+    for (uint i = 0u; i < 16u; ++i) {
+        if (!item_in_image(tiles, first + i)) continue;
+        const Ray ray = {packet.origin, direction_of(&packet, i), INFINITY};
+        write_surface(tiles, camera, surfaces, first + i, ray, (uint)INT_LANE(triangles, i),
+                      LANE(packet.end, i), MESH_ARGUMENTS);
     }
 }
+#endif

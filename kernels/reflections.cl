@@ -8,7 +8,7 @@
 #include "lib/textures.h"
 #include "lib/tiles.h"
 
-#if HAS_REFLECTIONS
+#if HAS_REFLECTIONS && HAS_GGX
 
 // Unit vectors that make a right-handed frame with unit vector n (Duff et al., "Building an
 // Orthonormal Basis, Revisited", JCGT 6:1, 2017).

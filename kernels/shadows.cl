@@ -12,17 +12,17 @@
 #define IS_UNUSED(packet) ((packet) >= packet_count)
 #endif
 
+#if LANES > 1
 // One packet per work-item.
 KERNEL void shadows_trace_packets(BVH_PARAMETERS, __global const float4* origins,
-                                  __global float16* rays, REGIONS uint packet_count) {
+                                  __global float* rays, REGIONS uint packet_count) {
     const uint i = get_global_id(0);
     if (i >= packet_count) return;
     if (IS_UNUSED(i)) return;
-    __global float16* rows = rays + 4 * (ulong)i;
-    if (!lanes_16(rows[3] > 0.0f)) return;
-    Packet packet = make_packet(origins[i].xyz, rows[0], rows[1], rows[2], rows[3]);
-    if (occlude_packet(BVH_ARGUMENTS, &packet)) rows[3] = packet.end;
+    Packet packet = load_packet(origins, rays, i);
+    if (rays_of(&packet) && occlude_packet(BVH_ARGUMENTS, &packet)) store_ends(&packet, rays, i);
 }
+#endif
 
 // The same, one ray per work-item.
 KERNEL void shadows_trace_rays(BVH_PARAMETERS, __global const float4* origins, __global float* rays,

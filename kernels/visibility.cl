@@ -17,63 +17,93 @@ KERNEL void visibility_learn(Pass pass, __global const uint* draws,
     const uint quadrant = get_global_id(0);
     if (quadrant >= 4u * pass.tile_count) return;
     __global uint* own = counts + quadrant_slots(4u * pass.first_tile + quadrant, light_count);
-    for (uint group = quadrant * pass.count; group < (quadrant + 1u) * pass.count; ++group) {
-        __global const uint* first_packets = pixel_packets + 32u * group;
+    const uint groups = 16u / LANES * pass.count;
+    for (uint group = quadrant * groups; group < (quadrant + 1u) * groups; ++group) {
+        __global const uint* first_packets = pixel_packets + 2u * LANES * group;
         for (uint draw = 0u; draw < draw_counts[group]; ++draw) {
-            const uint cell_bits = draws[DRAW_ROW(pass, group, draw, DRAW_CELL) + draw % 16u];
-            const uint cell = cell_bits & 15u, number = cell_bits >> 4 & 0x1ffu;
-            const float end = RAY_END(rays, first_packets[cell] + number / 16u, number % 16u);
+            const uint bits = draws[DRAW_ROW(pass, group, draw, DRAW_LANE) + draw % 16u];
+            const uint lane = bits & 15u, number = bits >> 4 & 0x1ffu;
+            const float end = RAY_END(rays, first_packets[lane] + number / 16u, number % 16u);
             if (end == 0.0f) continue;
             const uint slot =
                 DRAWN_SLOT(draws[DRAW_ROW(pass, group, draw, DRAW_ENTRY) + draw % 16u]);
-            const uint old = own[16u * slot + cell];
-            if ((old & 0xffffu) < MOST_TRIALS)
-                own[16u * slot + cell] = old + (end > 0.0f ? 65537u : 1u);
+            __global uint* count = own + 16u * slot + group_cell(group) + lane;
+            if ((*count & 0xffffu) < MOST_TRIALS) *count += end > 0.0f ? 65537u : 1u;
         }
     }
 }
 
-// Rays of 16 cells.
+// Rays of cells.
 typedef struct CellTrials {
-    float16 traced, passed;
+    float_n traced, passed;
 } CellTrials;
 
-static CellTrials load_trials(uint16 counts) {
+INLINE CellTrials load_trials(uint_n counts) {
     CellTrials t;
-    t.traced = convert_float16(counts & 0xffffu);
-    t.passed = convert_float16(counts >> 16);
+    t.traced = convert_float_n(counts & 0xffffu);
+    t.passed = convert_float_n(counts >> 16);
     return t;
 }
 
-// Sums over groups of 4 lanes, and over all, in every lane of the group.
-static float16 sum_quarters(float16 v) {
-    const float16 pairs = v + v.s1032547698badcfe;
-    return pairs + pairs.s23016745ab89efcd;
+// The rays of a slot in the quadrants' cells from `cell` on, in the 4 x 4 of them that each is one
+// of, and in the whole quadrant. `counts`: of the quadrant's 16 cells.
+INLINE CellTrials of_cells(__global const uint* counts, uint cell) {
+    return load_trials(UINTS_AT(counts + cell));
 }
 
-static float16 sum_all(float16 quarters) {
-    const float16 halves = quarters + quarters.s45670123cdef89ab;
-    return halves + halves.s89abcdef01234567;
+#if LANES == 16
+#define SWAP_1(v) (v).s1032547698badcfe
+#define SWAP_2(v) (v).s23016745ab89efcd
+#elif LANES == 8
+#define SWAP_1(v) (v).s10325476
+#define SWAP_2(v) (v).s23016745
+#elif LANES == 4
+#define SWAP_1(v) (v).s1032
+#define SWAP_2(v) (v).s2301
+#endif
+
+INLINE CellTrials of_quarters(__global const uint* counts, uint cell) {
+#if LANES > 1
+    CellTrials t = of_cells(counts, cell);
+    t.traced += SWAP_1(t.traced);
+    t.traced += SWAP_2(t.traced);
+    t.passed += SWAP_1(t.passed);
+    t.passed += SWAP_2(t.passed);
+#else
+    CellTrials t = {0.0f, 0.0f};
+    for (uint i = cell & ~3u; i < (cell & ~3u) + 4u; ++i) {
+        t.traced += (float)(counts[i] & 0xffffu);
+        t.passed += (float)(counts[i] >> 16);
+    }
+#endif
+    return t;
+}
+
+static Trials of_quadrant(__global const uint* counts) {
+    CellTrials t = of_cells(counts, 0u);
+    for (uint cell = LANES; cell < 16u; cell += LANES) {
+        const CellTrials more = of_cells(counts, cell);
+        t.traced += more.traced;
+        t.passed += more.passed;
+    }
+    const Trials sum = {sum_of(t.traced), sum_of(t.passed)};
+    return sum;
 }
 
 // A slot's trials in a whole tile: those of the cut (stage cuts) and of the cells. One slot per
 // work-item.
 KERNEL void visibility_sum(Tiles tiles, __global const uint* cut_sizes,
-                           __global const Trials* probes, __global const uint16* counts,
+                           __global const Trials* probes, __global const uint* counts,
                            uint light_count, __global Trials* totals) {
     const uint tile = get_global_id(0) / CUT_CAPACITY;
     const uint slot = get_global_id(0) % CUT_CAPACITY;
     if (tile >= tiles.count || slot >= cut_sizes[tile]) return;
-    CellTrials sum = {(float16)(0.0f), (float16)(0.0f)};
-    for (uint quadrant = 4u * tile; quadrant < 4u * tile + 4u; ++quadrant) {
-        const CellTrials t =
-            load_trials(counts[quadrant_slots(quadrant, light_count) / 16u + slot]);
-        sum.traced += t.traced;
-        sum.passed += t.passed;
-    }
     Trials total = probes[tile * CUT_CAPACITY + slot];
-    total.traced += sum_all(sum_quarters(sum.traced)).s0;
-    total.passed += sum_all(sum_quarters(sum.passed)).s0;
+    for (uint quadrant = 4u * tile; quadrant < 4u * tile + 4u; ++quadrant) {
+        const Trials own = of_quadrant(counts + quadrant_slots(quadrant, light_count) + 16u * slot);
+        total.traced += own.traced;
+        total.passed += own.passed;
+    }
     totals[tile * CUT_CAPACITY + slot] = total;
 }
 
@@ -147,16 +177,16 @@ static void add_trials(Trials* sum, Trials term) {
     sum->passed += term.passed;
 }
 
-static float16 shrink_16(float16 traced, float16 passed, float16 towards) {
-    return (passed + PARENT_RAYS * towards) * inverse_16(traced + PARENT_RAYS);
+INLINE float_n shrink_n(float_n traced, float_n passed, float_n towards) {
+    return (passed + PARENT_RAYS * towards) * inverse_n(traced + PARENT_RAYS);
 }
 
 // The rays of a part of a tile to all slots, and how many of them were expected to pass.
 typedef struct Outcome {
-    float16 traced, passed, expected;
+    float_n traced, passed, expected;
 } Outcome;
 
-static void add_outcome(Outcome* sum, float16 traced, float16 passed, float16 share) {
+INLINE void add_outcome(Outcome* sum, float_n traced, float_n passed, float_n share) {
     sum->traced += traced;
     sum->passed += passed;
     sum->expected = fma(traced, share, sum->expected);
@@ -169,10 +199,10 @@ static void add_outcome(Outcome* sum, float16 traced, float16 passed, float16 sh
 // How the odds of all slots change by what the part of the tile sees more or less of them than was
 // expected: lights are often hidden together.
 typedef struct Odds {
-    float16 passed, stopped;
+    float_n passed, stopped;
 } Odds;
 
-static Odds odds_of(const Outcome* seen) {
+INLINE Odds odds_of(const Outcome* seen) {
     Odds odds;
     odds.passed = (seen->passed + SIGHT_RAYS) / (seen->expected + SIGHT_RAYS);
     odds.stopped =
@@ -180,27 +210,30 @@ static Odds odds_of(const Outcome* seen) {
     return odds;
 }
 
-static float16 adjust(Odds odds, float16 share) {
-    const float16 yes = share * odds.passed;
-    return yes * inverse_16(fma(1.0f - share, odds.stopped, yes));
+INLINE float_n adjust(Odds odds, float_n share) {
+    const float_n yes = share * odds.passed;
+    return yes * inverse_n(fma(1.0f - share, odds.stopped, yes));
 }
 
 // visible[...] = V^ of every cell: from the tile's mean to the mean of GROUP slots, the slot, and
 // then of 16 x 16, 8 x 8 and 4 x 4 pixels: each shrinks towards the one before, adjusted to what
 // the part sees of all slots. Of tile_count tiles from first_tile on; visible[] holds these alone.
-// One quadrant (16 x 16 pixels) per work-item.
+// LANES cells of a quadrant (16 x 16 pixels) per work-item.
 KERNEL void visibility_estimate(uint first_tile, uint tile_count, __global const uint* cut_sizes,
-                                __global const Trials* shared, __global const uint16* counts,
-                                uint light_count, __global float16* visible) {
-    const uint quadrant = get_global_id(0);
+                                __global const Trials* shared, __global const uint* counts,
+                                uint light_count, __global float* visible) {
+    const uint quadrant = LANES * (uint)get_global_id(0) / 16u;
+    const uint cell = LANES * (uint)get_global_id(0) % 16u;
     if (quadrant >= 4u * tile_count) return;
     const uint tile = first_tile + quadrant / 4u;
     const uint size = cut_sizes[tile];
     __global const Trials* own = shared + tile * CUT_CAPACITY;
-    __global const uint16* own_counts =
-        counts + quadrant_slots(4u * first_tile + quadrant, light_count) / 16u;
-    __global float16* own_visible = visible + quadrant_slots(quadrant, light_count) / 16u;
-    const float16 zero = (float16)(0.0f);
+    __global const uint* own_counts =
+        counts + quadrant_slots(4u * first_tile + quadrant, light_count);
+    __global float_n* own_visible =
+        (__global float_n*)(visible + quadrant_slots(quadrant, light_count) + cell);
+    const uint stride = 16u / LANES;  // from slot to slot
+    const float_n zero = (float_n)(0.0f);
     Trials all = {0.0f, 0.0f};
     for (uint slot = 0u; slot < size; ++slot) add_trials(&all, own[slot]);
     const float tile_share = shrink(all, PRIOR_SHARE, 1.0f);
@@ -212,33 +245,34 @@ KERNEL void visibility_estimate(uint first_tile, uint tile_count, __global const
             for (uint i = slot; i < min(slot + GROUP, size); ++i) add_trials(&group, own[i]);
             group_share = shrink(group, tile_share, 1.0f);
         }
-        const float16 share = (float16)(shrink(own[slot], group_share, 1.0f));
-        const CellTrials t = load_trials(own_counts[slot]);
-        add_outcome(&of_16, sum_all(sum_quarters(t.traced)), sum_all(sum_quarters(t.passed)),
-                    share);
-        own_visible[slot] = share;
+        const float_n share = (float_n)(shrink(own[slot], group_share, 1.0f));
+        const Trials t = of_quadrant(own_counts + 16u * slot);
+        add_outcome(&of_16, (float_n)(t.traced), (float_n)(t.passed), share);
+        own_visible[stride * slot] = share;
     }
     Odds odds = odds_of(&of_16);
     for (uint slot = 0u; slot < size; ++slot) {
-        const CellTrials t = load_trials(own_counts[slot]);
-        const float16 traced = sum_quarters(t.traced), passed = sum_quarters(t.passed);
-        const float16 share =
-            shrink_16(sum_all(traced), sum_all(passed), adjust(odds, own_visible[slot]));
-        add_outcome(&of_8, traced, passed, share);
-        own_visible[slot] = share;
+        const Trials of_all = of_quadrant(own_counts + 16u * slot);
+        const CellTrials t = of_quarters(own_counts + 16u * slot, cell);
+        const float_n share = shrink_n((float_n)(of_all.traced), (float_n)(of_all.passed),
+                                       adjust(odds, own_visible[stride * slot]));
+        add_outcome(&of_8, t.traced, t.passed, share);
+        own_visible[stride * slot] = share;
     }
     odds = odds_of(&of_8);
     for (uint slot = 0u; slot < size; ++slot) {
-        const CellTrials t = load_trials(own_counts[slot]);
-        const float16 share = shrink_16(sum_quarters(t.traced), sum_quarters(t.passed),
-                                        adjust(odds, own_visible[slot]));
+        const CellTrials of_part = of_quarters(own_counts + 16u * slot, cell);
+        const CellTrials t = of_cells(own_counts + 16u * slot, cell);
+        const float_n share =
+            shrink_n(of_part.traced, of_part.passed, adjust(odds, own_visible[stride * slot]));
         add_outcome(&of_4, t.traced, t.passed, share);
-        own_visible[slot] = share;
+        own_visible[stride * slot] = share;
     }
     odds = odds_of(&of_4);
     for (uint slot = 0u; slot < size; ++slot) {
-        const CellTrials t = load_trials(own_counts[slot]);
-        const float16 share = shrink_16(t.traced, t.passed, adjust(odds, own_visible[slot]));
-        own_visible[slot] = max(share, LEAST_VISIBILITY);
+        const CellTrials t = of_cells(own_counts + 16u * slot, cell);
+        const float_n share =
+            shrink_n(t.traced, t.passed, adjust(odds, own_visible[stride * slot]));
+        own_visible[stride * slot] = max(share, LEAST_VISIBILITY);
     }
 }

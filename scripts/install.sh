@@ -1,22 +1,27 @@
 #!/usr/bin/env bash
 # Installs what building and running manylight needs on Debian 12; does nothing where all is there.
 #
-# usage: scripts/install.sh [--tests] [--no-intel] [--plots]
-#   --tests     also what the tests need: GoogleTest, Embree (for manylight bench), Python, Clang (to
-#               lint kernels), Chromium and Selenium (to click through reports), and Intel's OpenCL
-#               runtime for CPUs, where the processor is x86-64 (830 MB, into ~/.cache/manylight), so
-#               that two vendors' compilers run every kernel
-#   --no-intel  without Intel's runtime
-#   --plots     also Matplotlib, which draws the failure atlas and the picture of charts
+# usage: scripts/install.sh [--tests] [--portability] [--no-intel] [--plots]
+#   --tests        also what the tests need: GoogleTest, Embree (for manylight bench), Python, Clang
+#                  (to lint kernels), Oclgrind (which sees accesses out of bounds), Chromium and
+#                  Selenium (to click through reports), and Intel's OpenCL runtime for CPUs, where
+#                  the processor is x86-64 (830 MB, into ~/.cache/manylight), so that two vendors'
+#                  compilers run every kernel
+#   --portability  also what scripts/portability.sh needs: QEMU, which runs programs as on other
+#                  processors, Oclgrind, Python and Intel's runtime
+#   --no-intel     without Intel's runtime
+#   --plots        also Matplotlib, which draws the failure atlas and the picture of charts
 set -euo pipefail
 
 tests=false
 intel=true
+portability=false
 plots=false
 for argument in "$@"; do
     case $argument in
         --tests) tests=true ;;
         --no-intel) intel=false ;;
+        --portability) portability=true ;;
         --plots) plots=true ;;
         *) echo "install.sh: unknown option $argument" >&2; exit 2 ;;
     esac
@@ -29,8 +34,11 @@ packages=(
     libcli11-dev libfmt-dev libmeshoptimizer-dev libdraco-dev libjs-chart.js fonts-dejavu-core
 )
 if $tests; then
-    packages+=(libgtest-dev libembree-dev python3 python3-venv clang-15
+    packages+=(libgtest-dev libembree-dev python3 python3-venv clang-15 oclgrind
         chromium chromium-driver python3-selenium)
+fi
+if $portability; then
+    packages+=(python3 python3-venv oclgrind qemu-user)
 fi
 if $plots; then
     packages+=(python3 python3-matplotlib)
@@ -51,7 +59,7 @@ if ((${#missing[@]} > 0)); then
         "${missing[@]}" >/dev/null
 fi
 
-if $tests && $intel && [[ $(uname -m) == x86_64 ]]; then
+if { $tests || $portability; } && $intel && [[ $(uname -m) == x86_64 ]]; then
     venv=${XDG_CACHE_HOME:-$HOME/.cache}/manylight/intel-opencl
     if [[ ! -e $venv/lib/libintelocl.so ]]; then
         echo "installing Intel's OpenCL runtime into $venv"

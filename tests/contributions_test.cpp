@@ -19,7 +19,7 @@ namespace {
 
 // The matrix of the image's first pixel, which hits the scene, and of no representative.
 Matrix evaluate(Device device, const test::TestScene& scene) {
-    const unsigned lanes = lanes_for(device.info());
+    const unsigned lanes = device.form().bvh_width;
     const WideBvh bvh = build_wide_bvh(scene.scene, lanes, lanes, 5);
     const DeviceScene uploaded = upload_scene(device, scene.scene, bvh, scene.camera);
     const Tiles tiles = all_tiles(8, 8, 8);
@@ -112,7 +112,7 @@ TEST(contributions, packets_and_single_rays_agree) {
     const auto lights = static_cast<uint>(s.scene.lights.size());
     FOR_EACH_DEVICE(device) {
         Device d = device;
-        const unsigned lanes = lanes_for(d.info());
+        const unsigned lanes = d.form().bvh_width;
         const WideBvh bvh = build_wide_bvh(s.scene, lanes, lanes, reach_of(s.scene, s.camera));
         DeviceScene uploaded = upload_scene(d, s.scene, bvh, s.camera);
         std::vector<uint> items;  // that hit something

@@ -227,7 +227,7 @@ TEST(frame, cluster_layers) {
     FOR_EACH_DEVICE(shared) {
         const FrameResult result = test::render(shared, scene, options);
         Device device = shared;
-        const unsigned lanes = lanes_for(device.info());
+        const unsigned lanes = device.form().bvh_width;
         const WideBvh bvh =
             build_wide_bvh(scene.scene, lanes, lanes, reach_of(scene.scene, scene.camera));
         const DeviceScene uploaded = upload_scene(device, scene.scene, bvh, scene.camera);

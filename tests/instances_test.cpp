@@ -279,7 +279,7 @@ TEST(instances, rays) {
     }
     FOR_EACH_DEVICE(device) {
         Device d = device;
-        const unsigned lanes = lanes_for(d.info());
+        const unsigned lanes = d.form().bvh_width;
         const WideBvh bvh = build_wide_bvh(scene, lanes, lanes, reach_of(scene, camera));
         for (const bool any_hit : {true, false}) {
             set.any_hit = any_hit;

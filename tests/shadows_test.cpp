@@ -218,7 +218,7 @@ TEST(shadows, closed_meshes_are_watertight) {
                 }
             const Camera camera{float4(scale, scale, scale, 0), float4(0), float4(0), float4(0)};
             Device d = device;
-            const unsigned lanes = lanes_for(d.info());
+            const unsigned lanes = d.form().bvh_width;
             const WideBvh bvh = build_wide_bvh(scene, lanes, lanes, reach_of(scene, camera));
             for (const Tracing& tracing :
                  DeviceTracer(d, upload_scene(d, scene, bvh, camera)).tracings(any_hit)) {

@@ -19,7 +19,7 @@ class Point {
     Point(std::string name, const std::string& scene, const BuiltinOptions& options,
           uint light_samples = 4, unsigned width = 24, unsigned height = 14, double shift = 0)
         : name(std::move(name)), light_samples(light_samples), scene_(load(scene, options)) {
-        const unsigned lanes = lanes_for(test::devices().front().info());
+        const unsigned lanes = test::devices().front().form().bvh_width;
         const Camera camera = make_camera(find_view(scene_, ""), width, height, {shift, shift});
         bvh_ = build_wide_bvh(scene_, lanes, lanes, reach_of(scene_, camera));
         renderer_ = std::make_unique<Renderer>(test::devices().front(), scene_, bvh_, camera, width,

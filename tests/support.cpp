@@ -219,7 +219,7 @@ void expect_pass(const Check& check) {
 FrameResult render(const Device& device, const TestScene& scene, RenderOptions options) {
     options.width = scene.width;
     options.height = scene.height;
-    const unsigned lanes = lanes_for(device.info());
+    const unsigned lanes = device.form().bvh_width;
     const WideBvh bvh =
         build_wide_bvh(scene.scene, lanes, lanes, reach_of(scene.scene, scene.camera));
     Frame frame(device, scene.scene, bvh, scene.camera, options);

@@ -94,7 +94,9 @@ DeviceTracer::DeviceTracer(const Device& device, const DeviceScene& scene)
 
 std::vector<Tracing> DeviceTracer::tracings(bool any_hit) const {
     std::vector<Tracing> out;
+    const unsigned lanes = shared_->device.form().lanes;
     for (const bool packets : {true, false}) {
+        if (packets && lanes == 1) continue;
         const std::string kernel = fmt::format("{}_{}", any_hit ? "shadows_trace" : "bench_closest",
                                                packets ? "packets" : "rays");
         Kernel traced = shared_->device.kernel(any_hit ? "shadows.cl" : "bench.cl", kernel,

@@ -101,7 +101,7 @@ void add_ratios(const RaySetResult& set, const TracingResult& used, json& ratios
 }
 
 WideBvh build(const LoadedScene& loaded, const BenchArguments& arguments, const Device& device) {
-    const unsigned lanes = lanes_for(device.info());
+    const unsigned lanes = device.form().bvh_width;
     return build_wide_bvh(loaded.scene, arguments.bvh_width ? arguments.bvh_width : lanes,
                           arguments.bvh_block ? arguments.bvh_block : lanes,
                           reach_of(loaded.scene, loaded.camera));
@@ -211,7 +211,7 @@ void bench_traversal(const LoadedScene& loaded, Device& device, const BenchArgum
                            arguments.rounds, [&] { progress.set(++done / steps); });
         }();
         const TracingResult& used =
-            result.kernels[(set.any_hit ? scene.packets : scene.primary_packets) ? 0 : 1];
+            result.kernels[!set.any_hit && scene.packets && !scene.primary_packets ? 1 : 0];
         json& rays = out["rays"][set.name];
         rays["count"] = result.rays;
         for (const auto* list : {&result.kernels, &result.embree})
@@ -311,7 +311,8 @@ int run_bench(const BenchArguments& arguments) {
         throw InputError("--loading: goes with a file, not with 'bench {}'", arguments.what);
     BenchArguments with_file = arguments;
     with_file.scene.file = arguments.what;
-    Device device = Device::open(arguments.scene.device, arguments.scene.threads);
+    Device device =
+        Device::open(arguments.scene.device, arguments.scene.threads, arguments.scene.lanes);
     if (arguments.loading) {
         json loading;
         bench_loading(with_file.scene, device, loading);

@@ -148,7 +148,7 @@ int run_chart(const ChartArguments& arguments) {
     if (loaded.scene.lights.empty())
         throw InputError("{}: has no lights: there is nothing to chart", loaded.scene.file);
     const double load_seconds = seconds_since(start);
-    const Device device = Device::open(scene.device, scene.threads);
+    const Device device = Device::open(scene.device, scene.threads, scene.lanes);
     const auto build_start = Clock::now();
     const WideBvh bvh = build_bvh(loaded, device, options.quiet);
     const double bvh_seconds = seconds_since(build_start);

@@ -26,6 +26,7 @@ struct SceneArguments {
     MeshStorage storage = MeshStorage::automatic;
     std::string device;
     unsigned threads = 0;
+    unsigned lanes = 0;                        // 0: the form that suits the device
     unsigned width = 0;                        // 0: from the height and the camera's aspect
     unsigned height = 0;                       // 0: likewise, or 512
     std::pair<double, double> shift = {0, 0};  // of the image, pixels to the right and down

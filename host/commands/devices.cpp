@@ -2,9 +2,17 @@
 #include <fmt/format.h>
 
 #include "commands/commands.hpp"
-#include "stages/device_scene.hpp"
+#include "device/device.hpp"
 
 namespace manylight {
+namespace {
+
+std::string describe(const DeviceForm& form) {
+    if (form.lanes == 1) return "GPUs: a ray or a pixel per work-item";
+    return fmt::format("{} lanes: 16 rays or pixels per work-item, in vectors", form.lanes);
+}
+
+}  // namespace
 
 int run_devices() {
     const std::vector<DeviceInfo> devices = list_devices();
@@ -23,7 +31,7 @@ int run_devices() {
                    static_cast<double>(d.global_memory) / (1 << 30),
                    static_cast<double>(d.max_allocation) / (1 << 30));
         if (d.usable)
-            fmt::print("   can render; traces {} boxes or triangles at a time\n", lanes_for(d));
+            fmt::print("   can render, in the form of {}\n", describe(form_for(d)));
         else
             fmt::print("   cannot render: needs OpenCL 1.2, a compiler and little-endian memory\n");
     }

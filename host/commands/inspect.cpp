@@ -295,7 +295,8 @@ int run_inspect(const InspectArguments& arguments) {
     options.sampler = "adaptive";
     options.width = loaded.width;
     options.height = loaded.height;
-    Device device = Device::open(arguments.scene.device, arguments.scene.threads);
+    Device device =
+        Device::open(arguments.scene.device, arguments.scene.threads, arguments.scene.lanes);
     const WideBvh bvh = build_bvh(loaded, device);
     Frame frame(device, loaded.scene, bvh, loaded.camera, options);
     if (frame.plan().batches > 1) {
@@ -317,7 +318,7 @@ int run_inspect(const InspectArguments& arguments) {
     const bool lit = !loaded.scene.lights.empty();
     const PixelReport report =
         inspect_pixel(loaded.scene, frame.tree(), loaded.camera, tiles, pixel,
-                      lit ? frame.knowledge(tile) : TileKnowledge{{}, {}, {1, 0, 0}, 1});
+                      lit ? frame.knowledge(tile) : TileKnowledge{{}, {}, {1, 0, 0}, 1, 1});
     Inspected in = rank(loaded, frame.tree(), report);
     in.spp = options.spp;
     const float* rgb = result.image.at(pixel.x, pixel.y);

@@ -39,7 +39,7 @@ void refuse_scene_file(const Scene& scene, const std::string& option, const std:
 
 WideBvh build_bvh(const LoadedScene& loaded, const Device& device, bool quiet) {
     Progress progress("building", quiet);
-    const unsigned lanes = lanes_for(device.info());
+    const unsigned lanes = device.form().bvh_width;
     return build_wide_bvh(loaded.scene, lanes, lanes, reach_of(loaded.scene, loaded.camera),
                           [&](double share) { progress.set(share); });
 }

@@ -87,6 +87,9 @@ const std::map<std::string, MeshStorage> mesh_storages = {{"auto", MeshStorage::
                                                           {"shared", MeshStorage::shared},
                                                           {"copied", MeshStorage::copied}};
 
+const std::map<std::string, unsigned> device_forms = {
+    {"auto", 0}, {"gpu", 1}, {"4", 4}, {"8", 8}, {"16", 16}};
+
 // What a command that renders a scene needs beside its file.
 void add_view(CLI::App& command, SceneArguments& scene, unsigned height = 512) {
     command.add_option("--camera", scene.camera, "camera by name (default: the file's first)");
@@ -112,6 +115,12 @@ void add_view(CLI::App& command, SceneArguments& scene, unsigned height = 512) {
         ->transform(CLI::CheckedTransformer(mesh_storages).description(""));
     command.add_option("--device", scene.device,
                        "OpenCL device: number or part of its name, see 'manylight devices'");
+    command
+        .add_option(
+            "--device-form", scene.lanes,
+            "how kernels are laid out: auto (as suits the device), in vectors of 4, 8 or 16 "
+            "lanes, or gpu (what GPUs run, on any device)")
+        ->transform(CLI::CheckedTransformer(device_forms).description(""));
     command.add_option("--threads", scene.threads, "processors that a CPU device may use")
         ->check(whole(1, 4096));
     command.add_option("--width", scene.width, "image width (default: from the height)")

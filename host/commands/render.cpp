@@ -260,7 +260,8 @@ int run_render(const RenderArguments& arguments) {
     }
     options.width = loaded.width;
     options.height = loaded.height;
-    Device device = Device::open(arguments.scene.device, arguments.scene.threads);
+    Device device =
+        Device::open(arguments.scene.device, arguments.scene.threads, arguments.scene.lanes);
     const auto build_start = Clock::now();
     const WideBvh bvh = build_bvh(loaded, device, arguments.quiet);
     const double build_seconds = seconds_since(build_start);

@@ -31,7 +31,7 @@ int run_verify(const VerifyArguments& arguments) {
     SceneArguments scene = arguments.scene;
     if (scene.width == 0 && scene.height == 0) scene.width = 96;
     const LoadedScene loaded = load(scene);
-    const Device device = Device::open(scene.device, scene.threads);
+    const Device device = Device::open(scene.device, scene.threads, scene.lanes);
     VerifyOptions options;
     options.width = loaded.width;
     options.height = loaded.height;

@@ -11,9 +11,6 @@
 
 namespace manylight {
 
-/// Work-items per group of every kernel.
-inline unsigned local_size_of(const DeviceInfo& device) { return device.is_gpu ? 64 : 16; }
-
 struct DeviceMemory::Allocation {
     std::shared_ptr<Device::Context> context;
     cl::Buffer buffer;
@@ -23,6 +20,8 @@ struct DeviceMemory::Allocation {
 
 struct Device::Context {
     DeviceInfo info;
+    DeviceForm form{};
+    bool refuses_warnings = false;
     cl::Device device;
     cl::Context context;
     cl::CommandQueue queue;
@@ -34,7 +33,6 @@ struct Device::Context {
     std::map<std::string, cl::Program> programs;             // by file and options
     std::set<Launched> launched;                             // see Device::take_launched()
 
-    unsigned local_size() const { return local_size_of(info); }
     cl::Program& build(std::string_view file, const Defines& defines);
     void collect();  // waits, and adds the running launches to stage_seconds
 };

@@ -86,13 +86,14 @@ void DeviceMemory::clear() {
     }
 }
 
-Device Device::open(std::string_view selector, unsigned threads) {
+Device Device::open(std::string_view selector, unsigned threads, unsigned lanes) {
     if (threads > 0) limit_threads(threads);
     const std::size_t index = select_device(selector);
     Device device;
     device.context_ = std::make_shared<Context>();
     Context& context = *device.context_;
     context.info = list_devices()[index];
+    context.form = lanes > 0 ? form_of(lanes) : form_for(context.info);
     try {
         context.device = all_devices()[index];
         context.context = cl::Context(context.device);
@@ -105,6 +106,10 @@ Device Device::open(std::string_view selector, unsigned threads) {
 }
 
 const DeviceInfo& Device::info() const { return context_->info; }
+
+const DeviceForm& Device::form() const { return context_->form; }
+
+void Device::refuse_warnings() { context_->refuses_warnings = true; }
 
 // `shared`: the values, which stay where they are.
 DeviceMemory Device::allocate_bytes(std::size_t bytes, const void* shared) {

@@ -32,6 +32,20 @@ struct DeviceInfo {
     bool usable = false;               // OpenCL 1.2, a compiler, little-endian, groups large enough
 };
 
+/// How kernels are laid out: the vectors that suit a device's registers, or, for GPUs, none.
+struct DeviceForm {
+    unsigned lanes;   // of a register, 16, 8, 4: rays go by 16 in vectors of these; 1: one by one
+    unsigned pixels;  // that sampler adaptive draws together: 16, or 1
+    unsigned bvh_width;   // children of a BVH node, and triangles of a block
+    unsigned local_size;  // work-items of a group
+};
+
+/// The form of that many lanes; 1: what GPUs get, which other devices can run as well.
+[[nodiscard]] DeviceForm form_of(unsigned lanes);
+
+/// The form that suits a device.
+[[nodiscard]] DeviceForm form_for(const DeviceInfo& device);
+
 /// Every OpenCL device of every platform, in the loader's order.
 [[nodiscard]] std::vector<DeviceInfo> list_devices();
 
@@ -131,10 +145,17 @@ class Kernel {
 class Device {
   public:
     /// Opens a device (see select_device). `threads` > 0: on a CPU, use that many; to be called
-    /// before anything else touches OpenCL. Throws InputError, RuntimeError.
-    [[nodiscard]] static Device open(std::string_view selector, unsigned threads = 0);
+    /// before anything else touches OpenCL. `lanes` > 0: in another form than suits it. Throws
+    /// InputError, RuntimeError.
+    [[nodiscard]] static Device open(std::string_view selector, unsigned threads = 0,
+                                     unsigned lanes = 0);
 
     [[nodiscard]] const DeviceInfo& info() const;
+
+    [[nodiscard]] const DeviceForm& form() const;
+
+    /// From now on a compiler's warning fails a build; for tests. Users' builds take all of them.
+    void refuse_warnings();
 
     /// An array of `count` elements of undefined value. Throws RuntimeError if it does not fit.
     template <class T>

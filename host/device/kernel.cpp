@@ -15,10 +15,13 @@ double seconds_since(Clock::time_point start) {
     return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-std::string build_options(const Defines& defines, unsigned local_size) {
-    // -cl-kernel-arg-info: arguments are set by name.
-    std::string options = "-cl-std=CL1.2 -Werror -cl-kernel-arg-info";
-    options += fmt::format(" -DLOCAL_SIZE={}", local_size);
+std::string build_options(const Defines& defines, const DeviceForm& form, bool refuses_warnings) {
+    // -w: a warning of whatever compiler a driver brings concerns no user. -cl-kernel-arg-info:
+    // arguments are set by name.
+    std::string options = refuses_warnings ? "-cl-std=CL1.2 -Werror" : "-cl-std=CL1.2 -w";
+    options += fmt::format(" -cl-kernel-arg-info -DLOCAL_SIZE={}", form.local_size);
+    if (!defines.contains("LANES")) options += fmt::format(" -DLANES={}", form.lanes);
+    if (form.lanes == 1) options += " -DPORTABLE_LANES=1";  // nothing of the processor's own
     for (const auto& [name, value] : defines) options += fmt::format(" -D{}={}", name, value);
     return options;
 }
@@ -26,7 +29,7 @@ std::string build_options(const Defines& defines, unsigned local_size) {
 }  // namespace
 
 cl::Program& Device::Context::build(std::string_view file, const Defines& defines) {
-    const std::string options = build_options(defines, local_size());
+    const std::string options = build_options(defines, form, refuses_warnings);
     const std::string key = fmt::format("{} {}", file, options);
     const auto known = programs.find(key);
     if (known != programs.end()) return known->second;
@@ -35,8 +38,8 @@ cl::Program& Device::Context::build(std::string_view file, const Defines& define
     try {
         program.build(device, options.c_str());
     } catch (const cl::Error& error) {
-        throw RuntimeError("{}: cannot build {} ({})\noptions: {}\n{}", info.name, file,
-                           describe(error), options,
+        throw RuntimeError("{} ({}, driver {}): cannot build {}: {}\noptions: {}\n{}", info.name,
+                           info.platform, info.driver, file, describe(error), options,
                            program.getBuildInfo<CL_PROGRAM_BUILD_LOG>(device));
     }
     compile_seconds += seconds_since(start);
@@ -85,7 +88,7 @@ void Kernel::launch(std::size_t items, const Arguments& arguments) {
                 built_->kernel.setArg(i, bytes.size(), bytes.data());
             }
         }
-        const std::size_t local = context.local_size();
+        const std::size_t local = context.form.local_size;
         const std::size_t global = (items + local - 1) / local * local;
         // Drivers compile at a kernel's first launch, PoCL once more for large ranges: what such a
         // launch takes beyond running counts as compiling.

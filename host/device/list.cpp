@@ -42,7 +42,7 @@ DeviceInfo describe_device(const cl::Device& device) {
         device.getInfo<CL_DEVICE_AVAILABLE>() && device.getInfo<CL_DEVICE_COMPILER_AVAILABLE>() &&
         device.getInfo<CL_DEVICE_ENDIAN_LITTLE>() && !info.version.starts_with("OpenCL 1.0") &&
         !info.version.starts_with("OpenCL 1.1") &&
-        device.getInfo<CL_DEVICE_MAX_WORK_GROUP_SIZE>() >= local_size_of(info);
+        device.getInfo<CL_DEVICE_MAX_WORK_GROUP_SIZE>() >= form_for(info).local_size;
     return info;
 }
 
@@ -102,6 +102,15 @@ std::size_t default_device(const std::vector<DeviceInfo>& devices) {
 }
 
 }  // namespace
+
+DeviceForm form_of(unsigned lanes) {
+    return lanes == 1 ? DeviceForm{1, 1, 4, 64} : DeviceForm{lanes, 16, lanes, 16};
+}
+
+DeviceForm form_for(const DeviceInfo& device) {
+    if (device.is_gpu) return form_of(1);
+    return form_of(device.float_width >= 16 ? 16 : device.float_width >= 8 ? 8 : 4);
+}
 
 std::vector<cl::Device> all_devices() {
     std::vector<cl::Device> all;

@@ -90,7 +90,11 @@ TileKnowledge Adaptive::knowledge(uint tile) {
     sum_up();
     visibility_stage_.estimate(tile, 1, cuts_, visibility_);
     const float samples = samples_of_round(light_samples_);
-    TileKnowledge out{{}, {}, {samples, factor_ * samples, exposure_}, rounds_for(light_samples_)};
+    TileKnowledge out{{},
+                      {},
+                      {samples, factor_ * samples, exposure_},
+                      rounds_for(light_samples_),
+                      adaptive_stage_.lanes()};
     out.cut =
         cuts_.nodes.download(std::size_t{tile} * CUT_CAPACITY, cuts_.sizes.download(tile, 1)[0]);
     const std::size_t slots = Visibility::slots(light_count_);

@@ -14,6 +14,7 @@ struct TileKnowledge {
     std::vector<float> visible;  // [64 * slot + cell] V^, cells in Morton order
     Budget budget;               // of one round
     uint rounds;                 // of draws, whose mean is taken
+    unsigned together;           // pixels that share what is refined
 };
 
 /// Sampler adaptive on a batch of tiles: pixels in interleaved passes, each of which learns from

@@ -135,12 +135,11 @@ void set_noise(const std::vector<double>& shares, const std::vector<double>& val
     for (InspectedNode& node : out.nodes) node.noise /= sum;
 }
 
-// The 16 pixels that are drawn together with a pixel: the same place of its quadrant's cells.
+// The pixels that are drawn together with a pixel: the same place of cells beside its own.
 struct Group {
     std::vector<Surface> surfaces;
     std::vector<reference::DrawnPixel> pixels;
     std::size_t own;
-    std::size_t cell;  // of the tile
 };
 
 // `varied`: gets the pixels' own materials, if there are any.
@@ -148,10 +147,12 @@ Group find_group(const Scene& scene, std::optional<Scene>& varied, const referen
                  const Camera& camera, const Tiles& tiles, glm::uvec2 pixel,
                  const TileKnowledge& knowledge) {
     const std::size_t item = reference::item_of(tiles, pixel.x, pixel.y);
-    Group out{std::vector<Surface>(16), {}, item / 16 % 16, item / 16 % CELLS_PER_TILE};
-    for (std::size_t cell = 0; cell < 16; ++cell) {
-        const glm::uvec2 at = item_pixel(tiles, item / 256 * 256 + 16 * cell + item % 16);
-        Surface& surface = out.surfaces[cell];
+    const std::size_t cell = item / 16 % CELLS_PER_TILE;
+    Group out{std::vector<Surface>(knowledge.together), {}, cell % knowledge.together};
+    for (std::size_t i = 0; i < out.surfaces.size(); ++i) {
+        const std::size_t own_cell = cell - out.own + i;
+        const glm::uvec2 at = item_pixel(tiles, item - 16 * out.own + 16 * i);
+        Surface& surface = out.surfaces[i];
         surface.position.w = -1;
         if (at.x < tiles.width && at.y < tiles.height) {
             const reference::Ray ray = reference::primary_ray(camera, tiles, glm::dvec2(at) + 0.5);
@@ -163,7 +164,7 @@ Group find_group(const Scene& scene, std::optional<Scene>& varied, const referen
         drawn.surface = surface.position.w >= 0 ? &surface : nullptr;
         drawn.starts = {0, 0.5};
         for (std::size_t slot = 0; slot < knowledge.cut.size(); ++slot)
-            drawn.visible.push_back(knowledge.visible[64 * slot + out.cell / 16 * 16 + cell]);
+            drawn.visible.push_back(knowledge.visible[64 * slot + own_cell]);
     }
     return out;
 }

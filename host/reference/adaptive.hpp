@@ -72,14 +72,14 @@ struct Starts {
 
 [[nodiscard]] Starts draw_starts(uint x, uint y, const Pass& pass, uint pixel_sample, uint seed);
 
-/// A pixel of the 16 that are drawn together.
+/// A pixel of those that are drawn together.
 struct DrawnPixel {
     const Surface* surface;  // or none
     Starts starts;
     std::vector<double> visible;  // [slot] V^
 };
 
-/// Draws the nodes of 16 pixels, which share what is refined.
+/// Draws the nodes of pixels, which share what is refined: as many as the device has lanes.
 [[nodiscard]] std::vector<PixelDraws> draw_nodes(const LightTree& tree, const Scene& scene,
                                                  const Camera& camera, std::span<const uint> cut,
                                                  std::span<const DrawnPixel> pixels,

@@ -33,6 +33,9 @@ class AdaptiveStage {
               const Buffer<Surface>& surfaces, const Cuts& cuts, const Visibility& visibility,
               float weight, bool start, Estimates& estimates);
 
+    /// Pixels that are drawn together: they share what is refined.
+    [[nodiscard]] unsigned lanes() const { return lanes_; }
+
     /// What the last draw() did, as kernels' arguments (kernels/lib/cells.h).
     [[nodiscard]] Arguments draws() const;
 
@@ -51,6 +54,7 @@ class AdaptiveStage {
 
   private:
     Arguments scene_;
+    unsigned lanes_;  // pixels that are drawn together
     ShadowStage shadows_;
     Kernel draw_;
     Kernel aim_;

@@ -47,17 +47,12 @@ void set_textures(Device& device, const Scene& scene, Arguments& arguments) {
 
 }  // namespace
 
-unsigned lanes_for(const DeviceInfo& device) {
-    if (device.is_gpu) return 4;
-    return device.float_width >= 16 ? 16 : device.float_width >= 8 ? 8 : 4;
-}
-
 DeviceScene upload_scene(Device& device, const Scene& scene, const WideBvh& bvh,
                          const Camera& camera, const LightTree* tree, std::size_t points) {
     const Features features = find_features(scene);
     DeviceScene out;
     out.light_count = static_cast<uint>(scene.lights.size());
-    out.packets = !device.info().is_gpu;
+    out.packets = device.form().lanes > 1;
     out.primary_packets = out.packets && camera.forward.w == 0;
     out.varies_materials = scene.varies_materials();
     out.own_materials = static_cast<uint>(scene.materials.size());

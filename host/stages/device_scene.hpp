@@ -19,12 +19,9 @@ struct DeviceScene {
     Buffer<Material> materials;  // the scene's, and behind them those of points (see GBufferStage)
     uint own_materials = 0;      // index of the first of these
     bool varies_materials = false;
-    bool packets = false;          // rays with one origin are traced 16 at a time
+    bool packets = false;          // rays with one origin are traced together
     bool primary_packets = false;  // ... and primary rays have one origin
 };
-
-/// Lanes of a BVH node and of a triangle block that suit a device.
-[[nodiscard]] unsigned lanes_for(const DeviceInfo& device);
 
 /// Uploads a scene whose lights are complete (add_emitters): in the order of `tree`, and with its
 /// nodes (nodes, root_count, second_root), if there is one. Scene and BVH must outlive the result.

@@ -18,9 +18,11 @@ Arguments Visibility::arguments() const {
 }
 
 VisibilityStage::VisibilityStage(Device& device, const DeviceScene& scene)
-    : scene_(scene.arguments) {
+    : scene_(scene.arguments), lanes_(device.form().pixels) {
+    Defines defines = scene.traversal;
+    defines["LANES"] = static_cast<int>(lanes_);
     const auto kernel = [&](const char* name) {
-        return device.kernel("visibility.cl", name, scene.traversal, "visibility");
+        return device.kernel("visibility.cl", name, defines, "visibility");
     };
     learn_ = kernel("visibility_learn");
     sum_ = kernel("visibility_sum");
@@ -41,11 +43,11 @@ void VisibilityStage::sum(const Tiles& tiles, const Cuts& cuts, Visibility& out)
 }
 
 void VisibilityStage::estimate(uint first, uint count, const Cuts& cuts, Visibility& out) {
-    estimate_.launch(std::size_t{count} * 4, Arguments(scene_)
-                                                 .set(cuts.arguments())
-                                                 .set(out.arguments())
-                                                 .set("first_tile", first)
-                                                 .set("tile_count", count));
+    estimate_.launch(std::size_t{count} * CELLS_PER_TILE / lanes_, Arguments(scene_)
+                                                                       .set(cuts.arguments())
+                                                                       .set(out.arguments())
+                                                                       .set("first_tile", first)
+                                                                       .set("tile_count", count));
 }
 
 }  // namespace manylight

@@ -52,6 +52,7 @@ class VisibilityStage {
 
   private:
     Arguments scene_;
+    unsigned lanes_;
     Kernel learn_;
     Kernel sum_;
     Kernel share_;

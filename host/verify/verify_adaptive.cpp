@@ -23,6 +23,7 @@ const uint place_order[16] = {12, 0, 4, 8, 3, 7, 11, 15, 1, 2, 5, 6, 9, 10, 13, 
 
 // Two passes over some tiles, the second of which has learned from the first.
 struct Run {
+    unsigned lanes;  // pixels that are drawn together
     Tiles tiles;
     Pass first{0, 8, 0, 0, 0, 2}, second{8, 8, 0, 0, 0, 2};
     Budget budget{4, 4, 1};
@@ -38,7 +39,7 @@ struct Run {
 
     Run(Device& device, const DeviceScene& scene, Tiles all, uint cut_size, uint seed,
         std::size_t first_point)
-        : tiles(all), sample{3, seed, false} {
+        : lanes(device.form().pixels), tiles(all), sample{3, seed, false} {
         tiles.count = std::min(tiles.count, most_tiles);
         first.tile_count = second.tile_count = tiles.count;
         Buffer<Surface> points = device.allocate<Surface>(item_count(tiles));
@@ -76,9 +77,9 @@ struct Run {
     }
     // The item of a pixel of a pass.
     [[nodiscard]] static std::size_t item(const Pass& pass, std::size_t pixel) {
-        const std::size_t group = pixel / 16;
-        return 16 * (16 * (group / pass.count) + pixel % 16) +
-               place_order[pass.first + group % pass.count];
+        const std::size_t place = pixel / 16;
+        return 16 * (16 * (place / pass.count) + pixel % 16) +
+               place_order[pass.first + place % pass.count];
     }
     [[nodiscard]] bool hit(std::size_t item) const {
         const glm::uvec2 at = item_pixel(tiles, item);
@@ -176,45 +177,50 @@ Check check_visibility(const Run& run, const LightTree& tree) {
     return check;
 }
 
-// The draws of the second pass: 16 pixels at a time.
+// The pixels that are drawn together with pixel p of the second pass; `starts`: where their draws
+// start, which matters to which nodes are drawn alone.
+std::vector<reference::DrawnPixel> group_of(const Run& run, std::size_t p, bool starts) {
+    std::vector<reference::DrawnPixel> pixels;
+    for (std::size_t lane = 0; lane < run.lanes; ++lane) {
+        const std::size_t item = Run::item(run.second, p / run.lanes * run.lanes + lane);
+        const std::size_t tile = item / (std::size_t{ADAPTIVE_TILE} * ADAPTIVE_TILE);
+        const glm::uvec2 at = item_pixel(run.tiles, item);
+        reference::DrawnPixel& pixel = pixels.emplace_back(reference::DrawnPixel{
+            run.hit(item) ? &run.surfaces[item] : nullptr,
+            starts
+                ? reference::draw_starts(at.x, at.y, run.second, run.sample.index, run.sample.seed)
+                : reference::Starts{0.5, 0.5},
+            {}});
+        for (uint slot = 0; slot < run.sizes[tile]; ++slot)
+            pixel.visible.push_back(run.visible[run.place(tile, slot, item / 16 % 64)]);
+    }
+    return pixels;
+}
+
+// The draws of the second pass, a group of pixels at a time.
 Check check_weights(const Run& run, const LightTree& tree, const Scene& scene, const Camera& camera,
                     std::size_t most_entries) {
     Check check{.stage = "weights", .tolerance = node_tolerance};
-    const std::size_t groups = std::size_t{4} * run.tiles.count * run.second.count;
+    const std::size_t groups = pass_pixels(run.second) / run.lanes;
     const std::size_t stride =
-        (groups * 16 * std::max<std::size_t>(run.sizes.empty() ? 1 : run.sizes[0], 16) /
+        (groups * run.lanes * std::max<std::size_t>(run.sizes.empty() ? 1 : run.sizes[0], 16) /
          most_entries) |
         1;
     for (std::size_t group = 0; group < groups; group += stride) {
-        const std::size_t quadrant = group / run.second.count;
-        const std::size_t tile = quadrant / 4;
-        std::vector<reference::DrawnPixel> pixels;
-        std::vector<std::size_t> numbers;
-        for (std::size_t cell = 0; cell < 16; ++cell) {
-            const std::size_t p = 16 * group + cell;
-            const std::size_t item = Run::item(run.second, p);
-            const glm::uvec2 at = item_pixel(run.tiles, item);
-            reference::DrawnPixel pixel{
-                run.hit(item) ? &run.surfaces[item] : nullptr,
-                reference::draw_starts(at.x, at.y, run.second, run.sample.index, run.sample.seed),
-                {}};
-            for (uint slot = 0; slot < run.sizes[tile]; ++slot)
-                pixel.visible.push_back(
-                    run.visible[run.place(tile, slot, 16 * (quadrant % 4) + cell)]);
-            pixels.push_back(pixel);
-            numbers.push_back(p);
-        }
+        const std::size_t tile =
+            Run::item(run.second, run.lanes * group) / (std::size_t{ADAPTIVE_TILE} * ADAPTIVE_TILE);
+        const std::vector<reference::DrawnPixel> pixels = group_of(run, run.lanes * group, true);
         const std::vector<reference::PixelDraws> expected = reference::draw_nodes(
             tree, scene, camera, std::span(run.nodes).subspan(tile * CUT_CAPACITY, run.sizes[tile]),
             pixels, run.budget);
-        for (std::size_t cell = 0; cell < 16; ++cell) {
-            if (expected[cell].uncertain) {
+        for (std::size_t lane = 0; lane < run.lanes; ++lane) {
+            if (expected[lane].uncertain) {
                 check.skip_borderline();
                 continue;
             }
-            const std::string name = fmt::format("pixel {} of the pass", numbers[cell]);
-            const auto& draws = expected[cell].draws;
-            const std::vector<DrawnNode>& found = run.drawn[numbers[cell]];
+            const std::string name = fmt::format("pixel {} of the pass", run.lanes * group + lane);
+            const auto& draws = expected[lane].draws;
+            const std::vector<DrawnNode>& found = run.drawn[run.lanes * group + lane];
             const std::size_t count = found.size();
             check.compare_exact(count == draws.size(),
                                 fmt::format("{}: {} draws, not {}", name, count, draws.size()));
@@ -255,21 +261,10 @@ Check check_samples(const Run& run, const LightTree& tree, const Scene& scene,
         bool uncertain = false;
         const std::vector<DrawnNode>& draws = run.drawn[p];
         // The control variate: of all nodes, as they were refined. Those are the cut's nodes, but
-        // for what the 16 pixels of the group wanted: its sum comes from the same reference.
-        std::vector<reference::DrawnPixel> group;
-        const std::size_t quadrant = item / 256;
-        for (std::size_t c = 0; c < 16; ++c) {
-            const std::size_t other = Run::item(run.second, p / 16 * 16 + c);
-            reference::DrawnPixel pixel{
-                run.hit(other) ? &run.surfaces[other] : nullptr, {0.5, 0.5}, {}};
-            for (uint slot = 0; slot < run.sizes[tile]; ++slot)
-                pixel.visible.push_back(
-                    run.visible[run.place(tile, slot, 16 * (quadrant % 4) + c)]);
-            group.push_back(pixel);
-        }
+        // for what the pixels of the group wanted: its sum comes from the same reference.
         const reference::PixelDraws own = reference::draw_nodes(
             tree, scene, camera, std::span(run.nodes).subspan(tile * CUT_CAPACITY, run.sizes[tile]),
-            group, run.budget)[item / 16 % 16];
+            group_of(run, p, false), run.budget)[p % run.lanes];
         sum += control * own.control;
         magnitude += glm::length(own.control);
         for (std::size_t i = 0; i < draws.size(); ++i) {

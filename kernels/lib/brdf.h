@@ -46,7 +46,7 @@ static float3 metal_fresnel(Material m, float s) {
 }
 #endif
 
-#if HAS_REFLECTIONS
+#if HAS_REFLECTIONS && HAS_GGX
 // The density, 1/sr, of the directions that stage reflections draws, where the lobe has the value
 // of ggx_lobe(): G1(wo) D / (4 N.V).
 static float lobe_density(float lobe, float alpha, float n_in) {

@@ -13,9 +13,7 @@
 #include "lib/alpha.h"
 #include "lib/common.h"
 #include "lib/instances.h"
-
-#define JOIN_TOKENS(a, b) a##b
-#define JOIN(a, b) JOIN_TOKENS(a, b)
+#include "lib/lanes.h"
 
 #define BLOCK_ROWS 13
 
@@ -24,37 +22,8 @@ typedef JOIN(int, BVH_WIDTH) int_w;
 typedef JOIN(float, BVH_BLOCK) float_k;
 typedef JOIN(int, BVH_BLOCK) int_k;
 
-// A set of lanes as one integer, a bit per lane: lanes_N(comparison), lowest(set).
-#if defined(__AVX512DQ__) && defined(__AVX512VL__) && !defined(PORTABLE_LANES)
-#define lanes_4(comparison) (uint)(uchar) __builtin_ia32_cvtd2mask128(comparison)
-#define lanes_8(comparison) (uint)(uchar) __builtin_ia32_cvtd2mask256(comparison)
-#define lanes_16(comparison) (uint)(ushort) __builtin_ia32_cvtd2mask512(comparison)
-#else
-// PoCL turns these conversions of a comparison into one mask move; any() becomes branches. The
-// product gathers the lowest bits of eight bytes in its highest byte.
-static uint lanes_8(int8 comparison) {
-    const ulong bytes = as_ulong(convert_char8(comparison)) & 0x0101010101010101ul;
-    return (uint)((bytes * 0x0102040810204080ul) >> 56);
-}
-static uint lanes_4(int4 comparison) { return lanes_8((int8)(comparison, (int4)(0))); }
-static uint lanes_16(int16 comparison) {
-    return lanes_8(comparison.lo) | (lanes_8(comparison.hi) << 8);
-}
-#endif
-// The lowest lane of a set; OpenCL C 1.2 has clz but not ctz.
-static uint lowest(uint lanes) { return 31u - (uint)clz(lanes & (0u - lanes)); }
 #define lanes_w JOIN(lanes_, BVH_WIDTH)
 #define lanes_k JOIN(lanes_, BVH_BLOCK)
-
-#define LANE(vector, lane) (((const float*)&(vector))[lane])
-#define SET_LANE(vector, lane, value) ((float*)&(vector))[lane] = (value)
-#define INT_LANE(vector, lane) (((int*)&(vector))[lane])
-// The number of each lane.
-static int16 numbers_16(void) {
-    return (int16)(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
-}
-
-#define UINT_LANE(vector, lane) (((uint*)&(vector))[lane])
 
 // A segment origin + t direction, 0 < t < end.
 typedef struct Ray {

@@ -3,6 +3,7 @@
 #ifndef MANYLIGHT_LIB_CELLS_H
 #define MANYLIGHT_LIB_CELLS_H
 
+#include "lib/lanes.h"
 #include "lib/tiles.h"
 #include "shared/adaptive.h"
 
@@ -11,12 +12,17 @@ __constant uchar place_order[16] = {12, 0, 4, 8, 3, 7, 11, 15, 1, 2, 5, 6, 9, 10
 
 // The item of pixel p of a pass.
 static uint pass_item(Pass pass, uint p) {
-    const uint group = p / 16u;
-    const uint quadrant = 4u * pass.first_tile + group / pass.count;
-    return 16u * (16u * quadrant + p % 16u) + place_order[pass.first + group % pass.count];
+    const uint place = p / 16u;
+    const uint quadrant = 4u * pass.first_tile + place / pass.count;
+    return 16u * (16u * quadrant + p % 16u) + place_order[pass.first + place % pass.count];
 }
 
-static uint pass_groups(Pass pass) { return pass.tile_count * 4u * pass.count; }
+// The LANES pixels from LANES * group on are drawn together: the same place of as many cells.
+static uint pass_groups(Pass pass) { return pass.tile_count * 4u * pass.count * (16u / LANES); }
+
+// Of a group, its first pixel's cell in the quadrant, and the quadrant in the run.
+static uint group_cell(uint group) { return LANES * group % 16u; }
+static uint group_quadrant(Pass pass, uint group) { return LANES * group / 16u / pass.count; }
 
 // A drawn node: its slot and its index.
 #define DRAWN_SLOT(entry) ((entry) >> 24)
@@ -29,13 +35,13 @@ static uint pass_groups(Pass pass) { return pass.tile_count * 4u * pass.count; }
 // What the draws of a group hold, by rows of 16: draws[DRAW_ROW(...) + draw % 16]. The group's
 // packets begin at group_packets().
 #define DRAW_ENTRY 0u    // the drawn node
-#define DRAW_CELL 1u     // cell; its how manieth draw << 4; which of `times` << 13; times << 22
+#define DRAW_LANE 1u     // lane; its how manieth draw << 4; which of `times` << 13; times << 22
 #define DRAW_SHARE 2u    // float: how often the pixel draws the node on average
 #define DRAW_CONTROL 3u  // float: what of the node's estimate the control variate loses
 #define DRAW_ROW(pass, group, draw, row) \
     (64ul * (group_packets(pass, group) + (draw) / 16u) + 16u * (row))
 
-static uint group_packets(Pass pass, uint group) { return 16u * pass.packets * group; }
+static uint group_packets(Pass pass, uint group) { return LANES * pass.packets * group; }
 
 // Where slot 0 of a quadrant begins in arrays over slots and cells; `quadrant` counts over tiles.
 static ulong quadrant_slots(uint quadrant, uint light_count) {

@@ -7,6 +7,11 @@
 // multiply and add is fused unless the code says fma().
 #pragma OPENCL FP_CONTRACT OFF
 
+// Processors without the instruction would call a function for each number.
+#if defined(__x86_64__) && !defined(__FMA__)
+#define fma(a, b, c) ((a) * (b) + (c))
+#endif
+
 // Every kernel is launched with this local size; PoCL compiles again for any other.
 #define KERNEL __kernel __attribute__((reqd_work_group_size(LOCAL_SIZE, 1, 1)))
 

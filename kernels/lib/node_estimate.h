@@ -2,23 +2,31 @@
 // What a light tree's node contributes to surface points if nothing is in between: an estimate,
 // exact for a single point light, positive wherever a contribution is possible.
 //
-// Included with LANES 1 and NODES 1 for a node and a point, with LANES 16 and NODES 1 for a node
-// and 16 points, and with LANES 16 and NODES 16 for 16 nodes, each with a point of its own. Names
-// end in _1, _16 and _16_16 then.
+// Included for a node and a point, with WIDE_POINTS 1 for a node and LANES points, and with
+// WIDE_NODES 1, too, for LANES nodes, each with a point of its own. Names end in _1, _n and _n_n
+// then.
+#include "lib/inverse.h"
+
 #ifndef REACH_EDGE
 #define REACH_EDGE 20.0f  // 1 / the cosine over which light fades beyond a group's reach
 #endif
 
-#if LANES == 1
+#ifndef WIDE_POINTS
+#define WIDE_POINTS 0
+#endif
+#ifndef WIDE_NODES
+#define WIDE_NODES 0
+#endif
+#if !WIDE_POINTS
 #define REAL float
 #define NAMED(name) name##_1
 #define WHERE(condition, yes, no) ((condition) ? (yes) : (no))
 #else
-#define REAL float16
-#define NAMED(name) name##_16
+#define REAL float_n
+#define NAMED(name) name##_n
 #define WHERE(condition, yes, no) select(no, yes, condition)
 #endif
-#if NODES == 1
+#if !WIDE_NODES
 #define NODE Node_1
 #define NODE_REAL float
 #define NODE_MASK int
@@ -26,16 +34,16 @@
 #define ANY_NODE(mask) (mask)
 #define WHERE_NODE(mask, yes, no) ((mask) ? (yes) : (no))
 #else
-#define NODE Node_16
-#define NODE_REAL float16
-#define NODE_MASK int16
-#define NODE_NAMED(name) name##_16_16
-#define ANY_NODE(mask) (lanes_16(mask) != 0u)
+#define NODE Node_n
+#define NODE_REAL float_n
+#define NODE_MASK int_n
+#define NODE_NAMED(name) name##_n_n
+#define ANY_NODE(mask) (lanes_n(mask) != 0u)
 #define WHERE_NODE(mask, yes, no) select(no, yes, mask)
 #endif
 
-#if LANES == 1 || NODES == 16
-// A node of the light tree, or 16 of them, with what is needed of their lights.
+#if !WIDE_POINTS || WIDE_NODES
+// A node of the light tree, or LANES of them, with what is needed of their lights.
 typedef struct NODE {
     NODE_REAL x, y, z, spread;           // mean position, mean squared distance to it
     NODE_REAL ax, ay, az;                // mean axis; of an emitter with area its unit normal
@@ -48,15 +56,15 @@ typedef struct NODE {
     NODE_REAL scale, offset;  // of the cone, 0 and 1 without one
     NODE_REAL reach;          // of a group
 #endif
-#if NODES == 1
+#if !WIDE_NODES
     uint kind;  // LIGHT_DIRECTIONAL for groups of them, too
 #else
-    uint16 kind;
+    uint_n kind;
 #endif
 } NODE;
 #endif
 
-#if LANES == 1
+#if !WIDE_POINTS
 // 1 / range^2, 0 where there is no range.
 static float inverse_square(float range) { return range > 0.0f ? 1.0f / (range * range) : 0.0f; }
 
@@ -87,17 +95,15 @@ static Node_1 load_node(__global const LightNode* node, __global const Light* li
 #endif
     return n;
 }
-#elif NODES == 16
+#elif WIDE_NODES
 // The nodes of all lanes, with their numbers of lights and the first of these.
-static Node_16 load_nodes_16(__global const LightNode* nodes, __global const Light* lights,
-                             uint16 indices, uint16* first, uint16* count) {
-    float16 rows[16];
-    for (uint lane = 0u; lane < 16u; ++lane)
-        rows[lane] = vload16(0, (__global const float*)(nodes + UINT_LANE(indices, lane)));
-    transpose_16(rows);
-    *first = as_uint16(rows[12]);
-    *count = as_uint16(rows[13]);
-    Node_16 n;
+INLINE Node_n load_nodes_n(__global const LightNode* nodes, __global const Light* lights,
+                           uint_n indices, uint_n* first, uint_n* count) {
+    float_n rows[16];
+    load_columns((__global const float*)nodes, sizeof(LightNode) / sizeof(float), indices, rows);
+    *first = as_uint_n(rows[12]);
+    *count = as_uint_n(rows[13]);
+    Node_n n;
     n.x = rows[0];
     n.y = rows[1];
     n.z = rows[2];
@@ -110,12 +116,12 @@ static Node_16 load_nodes_16(__global const LightNode* nodes, __global const Lig
     n.green = rows[9];
     n.blue = rows[10];
     n.radius = rows[11];
-    n.kind = as_uint16(rows[15]);
-    n.kind = select(n.kind, (uint16)(LIGHT_DIRECTIONAL), as_uint16(n.kind == NODE_DIRECTIONS));
+    n.kind = as_uint_n(rows[15]);
+    n.kind = select(n.kind, (uint_n)(LIGHT_DIRECTIONAL), as_uint_n(n.kind == NODE_DIRECTIONS));
     // What single lights have of their own.
 #if HAS_POINT || HAS_SPOT
-    n.falloff = (float16)(0.0f);
-    uint lanes = lanes_16((n.kind == LIGHT_POINT) | (n.kind == LIGHT_SPOT));
+    n.falloff = (float_n)(0.0f);
+    uint lanes = lanes_n((n.kind == LIGHT_POINT) | (n.kind == LIGHT_SPOT));
     for (; lanes; lanes &= lanes - 1u) {
         const uint lane = lowest(lanes);
         SET_LANE(n.falloff, lane, inverse_square(lights[UINT_LANE(*first, lane)].axis.w));
@@ -123,9 +129,9 @@ static Node_16 load_nodes_16(__global const LightNode* nodes, __global const Lig
 #endif
 #if HAS_SPOT
     n.reach = rows[14];
-    n.scale = (float16)(0.0f);
-    n.offset = (float16)(1.0f);
-    for (lanes = lanes_16(n.kind == LIGHT_SPOT); lanes; lanes &= lanes - 1u) {
+    n.scale = (float_n)(0.0f);
+    n.offset = (float_n)(1.0f);
+    for (lanes = lanes_n(n.kind == LIGHT_SPOT); lanes; lanes &= lanes - 1u) {
         const uint lane = lowest(lanes);
         __global const Light* light = lights + UINT_LANE(*first, lane);
         SET_LANE(n.scale, lane, light->edge.x);
@@ -136,7 +142,7 @@ static Node_16 load_nodes_16(__global const LightNode* nodes, __global const Lig
 }
 #endif
 
-#if NODES == 1
+#if !WIDE_NODES
 // Surface points, by coordinates.
 typedef struct NAMED(Points) {
     REAL px, py, pz;        // positions
@@ -156,13 +162,13 @@ typedef struct NAMED(Color) {
     REAL red, green, blue;
 } NAMED(Color);
 
-static REAL NAMED(dot3)(REAL ax, REAL ay, REAL az, REAL bx, REAL by, REAL bz) {
+INLINE REAL NAMED(dot3)(REAL ax, REAL ay, REAL az, REAL bx, REAL by, REAL bz) {
     return fma(ax, bx, fma(ay, by, az * bz));
 }
 
 // (k + sqrt(k^2 + v)) / 2: max(k, 0), smoothed over sqrt(v); positive where v is, whatever the
 // rounding.
-static REAL NAMED(soft)(REAL k, REAL v) {
+INLINE REAL NAMED(soft)(REAL k, REAL v) {
     const REAL t = 0.5f * (fabs(k) + NAMED(root)(fma(k, k, v)));
     return WHERE(k >= 0.0f, t, 0.25f * v * NAMED(inverse)(max(t, (REAL)(1e-30f))));
 }
@@ -170,7 +176,7 @@ static REAL NAMED(soft)(REAL k, REAL v) {
 // Radiance reflected to the camera per illuminance from unit directions w: glTF's BRDF (lib/brdf.h)
 // with a lobe that is widened by the lights' squared angular spread, times cosines and all else in
 // `factor`. What stage reflections has of a light of `solid_angle` is left to it.
-static NAMED(Color) NAMED(reflect)(const NAMED(Points) * p, REAL wx, REAL wy, REAL wz, REAL spread,
+INLINE NAMED(Color) NAMED(reflect)(const NAMED(Points) * p, REAL wx, REAL wy, REAL wz, REAL spread,
                                    REAL solid_angle, REAL factor) {
     NAMED(Color) c;
 #if HAS_GGX
@@ -232,14 +238,14 @@ static NAMED(Color) NAMED(reflect)(const NAMED(Points) * p, REAL wx, REAL wy, RE
     return c;
 }
 
-static REAL NAMED(color_luminance)(NAMED(Color) c) {
+INLINE REAL NAMED(color_luminance)(NAMED(Color) c) {
     return 0.2126f * c.red + 0.7152f * c.green + 0.0722f * c.blue;
 }
 #endif
 
 // The lights' part: their intensity's factor and the unit direction to their centre. 0 where none
 // of them can be above the surface.
-static REAL NODE_NAMED(node_geometry)(const NODE* node, const NAMED(Points) * p, REAL* wx, REAL* wy,
+INLINE REAL NODE_NAMED(node_geometry)(const NODE* node, const NAMED(Points) * p, REAL* wx, REAL* wy,
                                       REAL* wz, REAL* spread) {
     const REAL dx = node->x - p->px, dy = node->y - p->py, dz = node->z - p->pz;
     const REAL distance2 = NAMED(dot3)(dx, dy, dz, dx, dy, dz);
@@ -318,7 +324,7 @@ static REAL NODE_NAMED(node_geometry)(const NODE* node, const NAMED(Points) * p,
 
 // The node's radiance reflected to the camera, cd/m2: intensity x geometry x BRDF towards the
 // centre.
-static NAMED(Color) NODE_NAMED(node_estimate)(const NODE* node, const NAMED(Points) * p) {
+INLINE NAMED(Color) NODE_NAMED(node_estimate)(const NODE* node, const NAMED(Points) * p) {
     REAL wx, wy, wz, spread;
     const REAL geometry = NODE_NAMED(node_geometry)(node, p, &wx, &wy, &wz, &spread);
     NAMED(Color) c = NAMED(reflect)(p, wx, wy, wz, spread, (REAL)(0.0f), geometry);
@@ -328,6 +334,8 @@ static NAMED(Color) NODE_NAMED(node_estimate)(const NODE* node, const NAMED(Poin
     return c;
 }
 
+#undef WIDE_POINTS
+#undef WIDE_NODES
 #undef REAL
 #undef NAMED
 #undef WHERE

@@ -1,66 +1,87 @@
 // SPDX-License-Identifier: MIT
-// 16 rays with one origin against the wide BVH of lib/bvh.h, by one work-item. Sets of rays are
-// integers, 1 << lane.
+// 16 rays with one origin against the wide BVH of lib/bvh.h, by one work-item: in vectors of LANES
+// rays, the packet's parts. Sets of rays are integers, 1 << ray.
 #ifndef MANYLIGHT_LIB_PACKET_H
 #define MANYLIGHT_LIB_PACKET_H
 
 #include "lib/bvh.h"
 
+#if LANES > 1
+
+#define PARTS (16 / LANES)
+
 // So many rays, or fewer, are tested one by one against all of a node's children at once, instead
 // of all at once against one child after another.
+#ifndef PACKET_FEW
 #define PACKET_FEW 8
+#endif
 
-// Segments origin + t direction, 0 < t < end; a lane whose end is not positive holds no ray.
+// Segments origin + t direction, 0 < t < end; a ray whose end is not positive does not exist.
 typedef struct Packet {
     float3 origin;
-    float16 x, y, z;                 // directions
-    float16 size;                    // their largest parts
-    float16 ix, iy, iz, bx, by, bz;  // slabs: planes at q are crossed at q * i + b
-    int16 near_x, near_y, near_z;    // as in Prepared
-    float16 end;
-    float3 lowest, highest;  // bounds of the inverses (ix, iy, iz) over all rays
-    float furthest;          // the last end
+    float_n x[PARTS], y[PARTS], z[PARTS];  // directions
+    float_n end[PARTS];
+    float_n size[PARTS];                      // the directions' largest parts
+    float_n ix[PARTS], iy[PARTS], iz[PARTS];  // slabs: planes at q are crossed at q * i + b
+    float_n bx[PARTS], by[PARTS], bz[PARTS];
+    int_n near_x[PARTS], near_y[PARTS], near_z[PARTS];  // as in Prepared
+    float3 lowest, highest;                             // bounds of the inverses (ix, iy, iz)
+    float furthest;                                     // the last end
+    uint renumber;                                      // to be added to the indices of triangles
 } Packet;
 
-static float16 safe_inverse_16(float16 d) {
-    return 1.0f / select(d, copysign((float16)(1e-20f), d), fabs(d) < 1e-20f);
+INLINE float_n safe_inverse_n(float_n d) {
+    return 1.0f / select(d, copysign((float_n)(1e-20f), d), fabs(d) < 1e-20f);
 }
 
-static float lowest_of(float16 v) {
-    const float8 a = min(v.lo, v.hi);
-    const float4 b = min(a.lo, a.hi);
-    const float2 c = min(b.lo, b.hi);
-    return min(c.x, c.y);
+INLINE float highest_of(float_n v) { return -lowest_of(-v); }
+
+static float last_end(const Packet* p) {
+    float_n last = p->end[0];
+    for (uint i = 1u; i < PARTS; ++i) last = max(last, p->end[i]);
+    return highest_of(last);
 }
 
-static float highest_of(float16 v) { return -lowest_of(-v); }
-
-static Packet make_packet(float3 origin, float16 x, float16 y, float16 z, float16 end) {
-    Packet p;
-    p.origin = origin;
-    p.x = x;
-    p.y = y;
-    p.z = z;
-    p.end = end;
-    p.ix = safe_inverse_16(x);
-    p.iy = safe_inverse_16(y);
-    p.iz = safe_inverse_16(z);
-    p.bx = -origin.x * p.ix;
-    p.by = -origin.y * p.iy;
-    p.bz = -origin.z * p.iz;
-    p.near_x = select((int16)(0), (int16)(3), p.ix < 0.0f);
-    p.near_y = select((int16)(1), (int16)(4), p.iy < 0.0f);
-    p.near_z = select((int16)(2), (int16)(5), p.iz < 0.0f);
-    p.size = max(max(fabs(x), fabs(y)), fabs(z));
-    const int16 none = !(end > 0.0f);
-    const float16 far = (float16)(INFINITY);
-    p.lowest = (float3)(lowest_of(select(p.ix, far, none)), lowest_of(select(p.iy, far, none)),
-                        lowest_of(select(p.iz, far, none)));
-    p.highest = (float3)(highest_of(select(p.ix, -far, none)), highest_of(select(p.iy, -far, none)),
-                         highest_of(select(p.iz, -far, none)));
-    p.furthest = highest_of(end);
-    return p;
+// Completes a packet of the world that has an origin, directions and ends.
+static void prepare_packet(Packet* p) {
+    p->renumber = 0u;
+    const float_n far = (float_n)(INFINITY);
+    float_n low_x = far, low_y = far, low_z = far, high_x = -far, high_y = -far, high_z = -far;
+    for (uint i = 0u; i < PARTS; ++i) {
+        const float_n ix = safe_inverse_n(p->x[i]), iy = safe_inverse_n(p->y[i]),
+                      iz = safe_inverse_n(p->z[i]);
+        p->ix[i] = ix;
+        p->iy[i] = iy;
+        p->iz[i] = iz;
+        p->bx[i] = -p->origin.x * ix;
+        p->by[i] = -p->origin.y * iy;
+        p->bz[i] = -p->origin.z * iz;
+        p->near_x[i] = select((int_n)(0), (int_n)(3), ix < 0.0f);
+        p->near_y[i] = select((int_n)(1), (int_n)(4), iy < 0.0f);
+        p->near_z[i] = select((int_n)(2), (int_n)(5), iz < 0.0f);
+        p->size[i] = max(max(fabs(p->x[i]), fabs(p->y[i])), fabs(p->z[i]));
+        const int_n none = !(p->end[i] > 0.0f);
+        low_x = min(low_x, select(ix, far, none));
+        low_y = min(low_y, select(iy, far, none));
+        low_z = min(low_z, select(iz, far, none));
+        high_x = max(high_x, select(ix, -far, none));
+        high_y = max(high_y, select(iy, -far, none));
+        high_z = max(high_z, select(iz, -far, none));
+    }
+    p->lowest = (float3)(lowest_of(low_x), lowest_of(low_y), lowest_of(low_z));
+    p->highest = (float3)(highest_of(high_x), highest_of(high_y), highest_of(high_z));
+    p->furthest = last_end(p);
 }
+
+// The rays that exist.
+static uint rays_of(const Packet* p) {
+    uint rays = 0u;
+    for (uint i = 0u; i < PARTS; ++i) rays |= lanes_n(p->end[i] > 0.0f) << (LANES * i);
+    return rays;
+}
+
+// Those of a set in one part.
+#define PART_OF(rays, part) ((rays) >> (LANES * (part)) & ALL_LANES)
 
 static float3 direction_of(const Packet* p, uint lane) {
     return (float3)(LANE(p->x, lane), LANE(p->y, lane), LANE(p->z, lane));
@@ -102,39 +123,44 @@ static uint may_enter_children(__global const float_w* node, const Packet* p, fl
     return lanes_w((*entry <= leave) & (node[0] <= node[3]));  // which empty lanes are not
 }
 
-// The rays that enter one child.
-static uint enter_child(__global const float* lane, const Packet* p) {
-    const float16 lx = (float16)(lane[0]), hx = (float16)(lane[3 * BVH_WIDTH]);
-    const float16 ly = (float16)(lane[BVH_WIDTH]), hy = (float16)(lane[4 * BVH_WIDTH]);
-    const float16 lz = (float16)(lane[2 * BVH_WIDTH]), hz = (float16)(lane[5 * BVH_WIDTH]);
-    const float16 x0 = fma(lx, p->ix, p->bx), x1 = fma(hx, p->ix, p->bx);
-    const float16 y0 = fma(ly, p->iy, p->by), y1 = fma(hy, p->iy, p->by);
-    const float16 z0 = fma(lz, p->iz, p->bz), z1 = fma(hz, p->iz, p->bz);
-    const float16 entry = max(max(min(x0, x1), min(y0, y1)), max(min(z0, z1), (float16)(0.0f)));
-    const float16 leave = min(min(max(x0, x1), max(y0, y1)), min(max(z0, z1), p->end));
-    return lanes_16(entry <= leave);
+// The rays of a set that enter one child.
+static uint enter_child(__global const float* lane, const Packet* p, uint rays) {
+    uint entered = 0u;
+    for (uint i = 0u; i < PARTS; ++i) {
+        if (PARTS > 1 && !PART_OF(rays, i)) continue;
+        const float_n x0 = fma((float_n)(lane[0]), p->ix[i], p->bx[i]);
+        const float_n x1 = fma((float_n)(lane[3 * BVH_WIDTH]), p->ix[i], p->bx[i]);
+        const float_n y0 = fma((float_n)(lane[BVH_WIDTH]), p->iy[i], p->by[i]);
+        const float_n y1 = fma((float_n)(lane[4 * BVH_WIDTH]), p->iy[i], p->by[i]);
+        const float_n z0 = fma((float_n)(lane[2 * BVH_WIDTH]), p->iz[i], p->bz[i]);
+        const float_n z1 = fma((float_n)(lane[5 * BVH_WIDTH]), p->iz[i], p->bz[i]);
+        const float_n entry = max(max(min(x0, x1), min(y0, y1)), max(min(z0, z1), (float_n)(0.0f)));
+        const float_n leave = min(min(max(x0, x1), max(y0, y1)), min(max(z0, z1), p->end[i]));
+        entered |= lanes_n(entry <= leave) << (LANES * i);
+    }
+    return entered & rays;
 }
 
-// A triangle of a block as all rays meet it.
+// A triangle of a block as the rays of a part meet it.
 typedef struct TriangleHits {
-    float16 t, n;  // t and what it is to be divided by
-    int16 hit;
+    float_n t, n;  // t and what it is to be divided by
+    int_n hit;
 } TriangleHits;
 
-// hit_block() the other way round: all rays against triangle `lane` of a block.
-static TriangleHits hit_triangle(const PreparedBlock* b, uint lane, const Packet* p) {
-#define DOT(v) \
-    fma(p->x, LANE((v)[0], lane), fma(p->y, LANE((v)[1], lane), p->z* LANE((v)[2], lane)))
-#define WITH_MARGIN(margin, v) fma(p->size, LANE(margin, lane), as_float16(as_int16(DOT(v)) ^ sign))
+// hit_block() the other way round: a part's rays against triangle `lane` of a block.
+INLINE TriangleHits hit_triangle(const PreparedBlock* b, uint lane, const Packet* p, uint part) {
+    const float_n x = p->x[part], y = p->y[part], z = p->z[part], size = p->size[part];
+#define DOT(v) fma(x, LANE((v)[0], lane), fma(y, LANE((v)[1], lane), z* LANE((v)[2], lane)))
+#define WITH_MARGIN(margin, v) fma(size, LANE(margin, lane), as_float_n(as_int_n(DOT(v)) ^ sign))
     TriangleHits hits;
-    const float16 n = DOT(b->n);
-    const int16 sign = as_int16(n) & (int)0x80000000;
-    const float16 inside = min(min(WITH_MARGIN(b->margin_u, b->q), WITH_MARGIN(b->margin_v, b->r)),
+    const float_n n = DOT(b->n);
+    const int_n sign = as_int_n(n) & (int)0x80000000;
+    const float_n inside = min(min(WITH_MARGIN(b->margin_u, b->q), WITH_MARGIN(b->margin_v, b->r)),
                                WITH_MARGIN(b->margin_w, b->s));
     hits.n = fabs(n);
-    hits.t = as_float16(as_int(LANE(b->t, lane)) ^ sign);
-    hits.hit = (inside >= 0.0f) & (hits.n > LANE(b->least_n, lane) * p->size) & (hits.t > 0.0f) &
-               (hits.t < p->end * hits.n);
+    hits.t = as_float_n(as_int(LANE(b->t, lane)) ^ sign);
+    hits.hit = (inside >= 0.0f) & (hits.n > LANE(b->least_n, lane) * size) & (hits.t > 0.0f) &
+               (hits.t < p->end[part] * hits.n);
     return hits;
 #undef WITH_MARGIN
 #undef DOT
@@ -142,7 +168,7 @@ static TriangleHits hit_triangle(const PreparedBlock* b, uint lane, const Packet
 
 // The children that rays of a set enter: `sets` gets which rays, `entry` where the first does, at
 // the earliest.
-static uint enter_children_16(__global const float_w* node, const Packet* p, uint rays, int_w* sets,
+static uint enter_children_of(__global const float_w* node, const Packet* p, uint rays, int_w* sets,
                               float_w* entry) {
     uint entered = 0u;
     if (popcount(rays) <= PACKET_FEW) {
@@ -160,7 +186,7 @@ static uint enter_children_16(__global const float_w* node, const Packet* p, uin
     } else {
         for (uint lanes = may_enter_children(node, p, entry); lanes; lanes &= lanes - 1u) {
             const uint lane = lowest(lanes);
-            const uint hit = enter_child((__global const float*)node + lane, p) & rays;
+            const uint hit = enter_child((__global const float*)node + lane, p, rays);
             INT_LANE(*sets, lane) = (int)hit;
             entered |= (uint)(hit != 0u) << lane;
         }
@@ -175,13 +201,14 @@ static bool is_there_for(const Packet* p, uint ray, const PreparedBlock* b, uint
     return is_block_there(b, lane, p->origin, direction_of(p, ray), triangle, seen ALPHA_ARGUMENTS);
 }
 
-// Of the rays that hit it, those that it is there for.
-static int16 there_for_all(const Packet* p, int16 hit, const PreparedBlock* b, uint lane,
+// Of a part's rays that hit it, those that it is there for.
+INLINE int_n there_for_all(const Packet* p, uint part, int_n hit, const PreparedBlock* b, uint lane,
                            uint triangle, uint seen ALPHA_PARAMETERS) {
     if (alpha_of[triangle] == NO_ALPHA) return hit;
-    for (uint rays = lanes_16(hit); rays; rays &= rays - 1u) {
+    for (uint rays = lanes_n(hit); rays; rays &= rays - 1u) {
         const uint ray = lowest(rays);
-        if (!is_there_for(p, ray, b, lane, triangle, seen ALPHA_ARGUMENTS)) INT_LANE(hit, ray) = 0;
+        if (!is_there_for(p, LANES * part + ray, b, lane, triangle, seen ALPHA_ARGUMENTS))
+            INT_LANE(hit, ray) = 0;
     }
     return hit;
 }
@@ -191,13 +218,22 @@ static int16 there_for_all(const Packet* p, int16 hit, const PreparedBlock* b, u
 // The packet in the frame of an instance.
 static Packet packet_in_instance(const Packet* p, __global const Instance* in) {
     const float4 a = in->to_object[0], b = in->to_object[1], c = in->to_object[2];
-    return make_packet(point_to_object(in, p->origin), fma(a.x, p->x, fma(a.y, p->y, a.z * p->z)),
-                       fma(b.x, p->x, fma(b.y, p->y, b.z * p->z)),
-                       fma(c.x, p->x, fma(c.y, p->y, c.z * p->z)), p->end);
+    Packet inside;
+    inside.origin = point_to_object(in, p->origin);
+    for (uint i = 0u; i < PARTS; ++i) {
+        const float_n x = p->x[i], y = p->y[i], z = p->z[i];
+        inside.x[i] = fma(a.x, x, fma(a.y, y, a.z * z));
+        inside.y[i] = fma(b.x, x, fma(b.y, y, b.z * z));
+        inside.z[i] = fma(c.x, x, fma(c.y, y, c.z * z));
+        inside.end[i] = p->end[i];
+    }
+    prepare_packet(&inside);
+    inside.renumber = in->first - in->stored;
+    return inside;
 }
 
 static void leave_instance(const Packet* inside, Packet* world) {
-    world->end = inside->end;
+    for (uint i = 0u; i < PARTS; ++i) world->end[i] = inside->end[i];
     world->furthest = inside->furthest;
 }
 #endif
@@ -207,17 +243,14 @@ static bool occlude_packet(BVH_PARAMETERS, Packet* p) {
     int stack[BVH_STACK];
     uint masks[BVH_STACK];
     int top = 0;
-    uint live = lanes_16(p->end > 0.0f);
+    uint live = rays_of(p);
     const uint all = live;
     stack[top] = 0;
     masks[top++] = live;
 #if HAS_INSTANCES
     Packet inside;  // an instance; then p points to it
     Packet* const world = p;
-    int outside = 0;     // as in occluded()
-    uint renumber = 0u;  // to be added to the indices of triangles
-#elif HAS_ALPHA
-    const uint renumber = 0u;
+    int outside = 0;  // as in occluded()
 #endif
     while (top > 0) {
 #if HAS_INSTANCES
@@ -225,7 +258,6 @@ static bool occlude_packet(BVH_PARAMETERS, Packet* p) {
             leave_instance(p, world);
             p = world;
             outside = 0;
-            renumber = 0u;
         }
 #endif
         const int entry = stack[--top];
@@ -237,7 +269,6 @@ static bool occlude_packet(BVH_PARAMETERS, Packet* p) {
             inside = packet_in_instance(world, in);
             p = &inside;
             outside = top;
-            renumber = in->first - in->stored;
             stack[top++] = in->root;  // for the same rays
             continue;
         }
@@ -249,7 +280,7 @@ static bool occlude_packet(BVH_PARAMETERS, Packet* p) {
             __global const uint* names = (__global const uint*)(rows + 9);
 #endif
             const uint triangles = (uint)(~entry & 15) + 1u;
-            if (popcount(mask) < triangles) {
+            if (popcount(mask) < PARTS * triangles) {
                 for (uint rays = mask; rays; rays &= rays - 1u) {
                     const uint lane = lowest(rays);
                     uint found = lanes_k(hit_block(&block, direction_of(p, lane),
@@ -259,7 +290,7 @@ static bool occlude_packet(BVH_PARAMETERS, Packet* p) {
                     for (; found; found &= found - 1u) {
                         const uint t = lowest(found);
                         if (is_there_for(p, lane, &block, t, names[t],
-                                         names[t] + renumber ALPHA_ARGUMENTS))
+                                         names[t] + p->renumber ALPHA_ARGUMENTS))
                             break;
                     }
 #endif
@@ -268,18 +299,19 @@ static bool occlude_packet(BVH_PARAMETERS, Packet* p) {
                     SET_LANE(p->end, lane, -1.0f);
                 }
             } else {
-                for (uint triangle = 0u; triangle < triangles; ++triangle) {
-                    int16 hit = hit_triangle(&block, triangle, p).hit;
+                for (uint triangle = 0u; triangle < triangles && (mask & live); ++triangle)
+                    for (uint part = 0u; part < PARTS; ++part) {
+                        if (PARTS > 1 && !PART_OF(mask & live, part)) continue;
+                        int_n hit = hit_triangle(&block, triangle, p, part).hit;
 #if HAS_ALPHA
-                    hit = there_for_all(p, hit, &block, triangle, names[triangle],
-                                        names[triangle] + renumber ALPHA_ARGUMENTS);
+                        hit = there_for_all(p, part, hit, &block, triangle, names[triangle],
+                                            names[triangle] + p->renumber ALPHA_ARGUMENTS);
 #endif
-                    const uint rays = lanes_16(hit);
-                    if (!rays) continue;
-                    live &= ~rays;
-                    p->end = select(p->end, (float16)(-1.0f), hit);
-                    if (!(mask & live)) break;
-                }
+                        const uint rays = lanes_n(hit);
+                        if (!rays) continue;
+                        live &= ~(rays << (LANES * part));
+                        p->end[part] = select(p->end[part], (float_n)(-1.0f), hit);
+                    }
             }
             if (!live) break;
             continue;
@@ -288,7 +320,7 @@ static bool occlude_packet(BVH_PARAMETERS, Packet* p) {
         __global const int* children = (__global const int*)(node + 6);
         int_w sets;
         float_w near;
-        for (uint lanes = enter_children_16(node, p, mask, &sets, &near); lanes;
+        for (uint lanes = enter_children_of(node, p, mask, &sets, &near); lanes;
              lanes &= lanes - 1u) {
             const uint lane = lowest(lanes);
             stack[top] = children[lane];
@@ -302,22 +334,19 @@ static bool occlude_packet(BVH_PARAMETERS, Packet* p) {
 }
 
 // Shortens every ray to its closest hit, whose triangle `triangles` gets; ~0 where there is none.
-static void closest_hits(BVH_PARAMETERS, Packet* p, int16* triangles) {
+INLINE void closest_hits(BVH_PARAMETERS, Packet* p, int_n* triangles) {
     int stack[BVH_STACK];
     float distance[BVH_STACK];
     uint masks[BVH_STACK];
     int top = 0;
-    *triangles = (int16)(~0);
+    for (uint i = 0u; i < PARTS; ++i) triangles[i] = (int_n)(~0);
     stack[top] = 0;
     distance[top] = 0.0f;
-    masks[top++] = lanes_16(p->end > 0.0f);
+    masks[top++] = rays_of(p);
 #if HAS_INSTANCES
     Packet inside;  // as in occlude_packet()
     Packet* const world = p;
     int outside = 0;
-    int renumber = 0;  // to be added to the indices of triangles
-#else
-    const int renumber = 0;
 #endif
     while (top > 0) {
 #if HAS_INSTANCES
@@ -325,7 +354,6 @@ static void closest_hits(BVH_PARAMETERS, Packet* p, int16* triangles) {
             leave_instance(p, world);
             p = world;
             outside = 0;
-            renumber = 0;
         }
 #endif
         const int entry = stack[--top];
@@ -337,18 +365,17 @@ static void closest_hits(BVH_PARAMETERS, Packet* p, int16* triangles) {
             inside = packet_in_instance(world, in);
             p = &inside;
             outside = top;
-            renumber = (int)(in->first - in->stored);
             stack[top++] = in->root;  // for the same rays, at the same distance
             continue;
         }
 #endif
         if (entry < 0) {
             __global const float_k* rows = bvh_blocks + (~entry >> 4) * BLOCK_ROWS;
-            __global const int* names = (__global const int*)(rows + 9);
+            __global const uint* names = (__global const uint*)(rows + 9);
             const PreparedBlock block = prepare_block(rows, p->origin);
             bool any_hit = false;
             const uint all = (uint)(~entry & 15) + 1u;
-            if (popcount(mask) < all) {
+            if (popcount(mask) < PARTS * all) {
                 for (uint rays = mask; rays; rays &= rays - 1u) {
                     const uint lane = lowest(rays);
                     const BlockHits hits = hit_block(&block, direction_of(p, lane),
@@ -360,36 +387,41 @@ static void closest_hits(BVH_PARAMETERS, Packet* p, int16* triangles) {
                         const uint triangle = lowest(lanes);
                         if (LANE(t, triangle) >= LANE(p->end, lane)) continue;
 #if HAS_ALPHA
-                        if (!is_there_for(p, lane, &block, triangle, (uint)names[triangle],
-                                          (uint)(names[triangle] + renumber) ALPHA_ARGUMENTS))
+                        if (!is_there_for(p, lane, &block, triangle, names[triangle],
+                                          names[triangle] + p->renumber ALPHA_ARGUMENTS))
                             continue;
 #endif
                         SET_LANE(p->end, lane, LANE(t, triangle));
-                        INT_LANE(*triangles, lane) = names[triangle] + renumber;
+                        ((int*)triangles)[lane] = (int)(names[triangle] + p->renumber);
                         any_hit = true;
                     }
                 }
             } else {
-                for (uint triangle = 0u; triangle < all; ++triangle) {
-                    TriangleHits hits = hit_triangle(&block, triangle, p);
+                for (uint triangle = 0u; triangle < all; ++triangle)
+                    for (uint part = 0u; part < PARTS; ++part) {
+                        if (PARTS > 1 && !PART_OF(mask, part)) continue;
+                        TriangleHits hits = hit_triangle(&block, triangle, p, part);
 #if HAS_ALPHA
-                    hits.hit = there_for_all(p, hits.hit, &block, triangle, (uint)names[triangle],
-                                             (uint)(names[triangle] + renumber) ALPHA_ARGUMENTS);
+                        hits.hit =
+                            there_for_all(p, part, hits.hit, &block, triangle, names[triangle],
+                                          names[triangle] + p->renumber ALPHA_ARGUMENTS);
 #endif
-                    if (!lanes_16(hits.hit)) continue;
-                    p->end = select(p->end, hits.t / hits.n, hits.hit);
-                    *triangles = select(*triangles, (int16)(names[triangle] + renumber), hits.hit);
-                    any_hit = true;
-                }
+                        if (!lanes_n(hits.hit)) continue;
+                        p->end[part] = select(p->end[part], hits.t / hits.n, hits.hit);
+                        triangles[part] =
+                            select(triangles[part], (int_n)((int)(names[triangle] + p->renumber)),
+                                   hits.hit);
+                        any_hit = true;
+                    }
             }
-            if (any_hit) p->furthest = highest_of(p->end);
+            if (any_hit) p->furthest = last_end(p);
             continue;
         }
         __global const float_w* node = bvh_nodes + entry * 7;
         __global const int* children = (__global const int*)(node + 6);
         int_w sets;
         float_w enter;
-        uint lanes = enter_children_16(node, p, mask, &sets, &enter);
+        uint lanes = enter_children_of(node, p, mask, &sets, &enter);
         float nearest = INFINITY;
         for (; lanes; lanes &= lanes - 1u) {  // the nearest child ends on top of the stack
             const uint lane = lowest(lanes);
@@ -411,5 +443,7 @@ static void closest_hits(BVH_PARAMETERS, Packet* p, int16* triangles) {
     leave_instance(p, world);
 #endif
 }
+
+#endif
 
 #endif

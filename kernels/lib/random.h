@@ -4,6 +4,7 @@
 #define MANYLIGHT_LIB_RANDOM_H
 
 #include "lib/common.h"
+#include "lib/lanes.h"
 
 // Four uniform 32-bit integers: pcg4d of Jarzynski and Olano, "Hash Functions for GPU Rendering"
 // (JCGT 9:3, 2020).
@@ -21,13 +22,13 @@ static uint4 random_bits(uint pixel, uint pixel_sample, uint dimension, uint see
     return v;
 }
 
-// The same for 16 pixels and dimensions: v[0] to v[3].
-static void random_bits_16(uint16 pixels, uint pixel_sample, uint16 dimensions, uint seed,
-                           uint16* v) {
+// The same for LANES pixels and dimensions: v[0] to v[3].
+INLINE void random_bits_n(uint_n pixels, uint pixel_sample, uint_n dimensions, uint seed,
+                          uint_n* v) {
     v[0] = pixels * 1664525u + 1013904223u;
-    v[1] = (uint16)(pixel_sample * 1664525u + 1013904223u);
+    v[1] = (uint_n)(pixel_sample * 1664525u + 1013904223u);
     v[2] = dimensions * 1664525u + 1013904223u;
-    v[3] = (uint16)(seed * 1664525u + 1013904223u);
+    v[3] = (uint_n)(seed * 1664525u + 1013904223u);
     for (uint round = 0u; round < 2u; ++round) {
         v[0] += v[1] * v[3];
         v[1] += v[2] * v[0];
@@ -45,10 +46,10 @@ static uint step_bits(uint bits, uint i) {
     return (word >> 22) ^ word;
 }
 
-// The same for 16.
-static uint16 step_bits_16(uint16 bits, uint i) {
-    const uint16 state = (bits + i * 0x9e3779b9u) * 747796405u + 2891336453u;
-    const uint16 word = ((state >> ((state >> 28u) + 4u)) ^ state) * 277803737u;
+// The same for LANES.
+INLINE uint_n step_bits_n(uint_n bits, uint i) {
+    const uint_n state = (bits + i * 0x9e3779b9u) * 747796405u + 2891336453u;
+    const uint_n word = ((state >> ((state >> 28u) + 4u)) ^ state) * 277803737u;
     return (word >> 22u) ^ word;
 }
 
@@ -65,7 +66,7 @@ static uint16 step_bits_16(uint16 bits, uint i) {
 // A float in [0, 1) from the top 24 bits.
 static float unit_float(uint bits) { return (float)(bits >> 8) * 0x1p-24f; }
 
-static float16 unit_float_16(uint16 bits) { return convert_float16(bits >> 8u) * 0x1p-24f; }
+INLINE float_n unit_float_n(uint_n bits) { return convert_float_n(bits >> 8u) * 0x1p-24f; }
 
 static uint reverse_bits(uint v) {
     v = (v >> 16) | (v << 16);

@@ -5,14 +5,36 @@
 #ifndef MANYLIGHT_LIB_RAYS_H
 #define MANYLIGHT_LIB_RAYS_H
 
-#include "lib/bvh.h"
+#include "lib/packet.h"
 
 #define RAY_END(rays, packet, lane) (rays)[64 * (ulong)(packet) + 48 + (lane)]
 
 // Empties a packet.
 static void clear_packet(__global float* rays, ulong packet) {
-    *(__global float16*)(rays + 64 * packet + 48) = (float16)(0.0f);
+    for (uint lane = 0u; lane < 16u; lane += LANES)
+        *(__global float_n*)(rays + 64 * packet + 48 + lane) = (float_n)(0.0f);
 }
+
+#if LANES > 1
+static Packet load_packet(__global const float4* origins, __global const float* rays, uint packet) {
+    __global const float_n* rows = (__global const float_n*)(rays + 64 * (ulong)packet);
+    Packet p;
+    p.origin = origins[packet].xyz;
+    for (uint i = 0u; i < PARTS; ++i) {
+        p.x[i] = rows[i];
+        p.y[i] = rows[PARTS + i];
+        p.z[i] = rows[2 * PARTS + i];
+        p.end[i] = rows[3 * PARTS + i];
+    }
+    prepare_packet(&p);
+    return p;
+}
+
+static void store_ends(const Packet* p, __global float* rays, uint packet) {
+    for (uint i = 0u; i < PARTS; ++i)
+        *(__global float_n*)(&RAY_END(rays, packet, LANES * i)) = p->end[i];
+}
+#endif
 
 // Puts a ray in a lane, but for its origin.
 static void put_ray(__global float* rays, ulong packet, uint lane, Ray ray) {
