@@ -24,6 +24,7 @@ struct DeviceInfo {
     std::string version;   // of OpenCL
     std::string language;  // version of OpenCL C
     std::string driver;
+    std::string type;  // CPU, GPU, accelerator or other
     bool is_gpu = false;
     unsigned compute_units = 0;
     std::uint64_t global_memory = 0;   // bytes
@@ -39,6 +40,9 @@ struct DeviceForm {
     unsigned bvh_width;   // children of a BVH node, and triangles of a block
     unsigned local_size;  // work-items of a group
 };
+
+/// What is publicly known to go wrong with a device's driver, in a sentence; empty: nothing.
+[[nodiscard]] std::string known_trouble(const DeviceInfo& device);
 
 /// The form of that many lanes; 1: what GPUs get, which other devices can run as well.
 [[nodiscard]] DeviceForm form_of(unsigned lanes);

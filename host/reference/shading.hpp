@@ -42,14 +42,16 @@ struct Unshadowed {
 [[nodiscard]] Unshadowed unshadowed(const Surface& surface, const Material& material,
                                     const Camera& camera, const Light& light, const glm::dvec2& u);
 
-/// By how much rounding of the surface's position and of directions to single precision can change
-/// the value of unshadowed(): the changes under shifts of the position along each axis by 8 units
-/// in the last place of the coordinates and of the distance to the light, added up.
+/// By how much rounding to single precision can change the value of unshadowed(): the changes under
+/// shifts of the position along each axis by 8 units in the last place of the coordinates and of
+/// the distance to the light, of an area's normal (a cross product) by 2 units of the product of
+/// its sides, and of the cosine to a spot's axis by 4 units, added up.
 [[nodiscard]] double rounding_slack(const Surface& surface, const Material& material,
                                     const Camera& camera, const Light& light, const glm::dvec2& u);
 
-/// How far single precision moves the ends of a shadow ray, m.
-[[nodiscard]] double end_rounding(const Ray& shadow);
+/// How far single precision moves the ends of a surface's shadow ray, m: 16 units in the last place
+/// of their coordinates, and of those of the triangle that the ray starts off.
+[[nodiscard]] EndShifts end_rounding(const Surface& surface, const Ray& shadow);
 
 [[nodiscard]] inline double luminance(const glm::dvec3& rgb) {
     return 0.2126 * rgb.r + 0.7152 * rgb.g + 0.0722 * rgb.b;

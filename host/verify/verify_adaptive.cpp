@@ -292,8 +292,9 @@ Check check_samples(const Run& run, const LightTree& tree, const Scene& scene,
             const glm::dvec3 value = term.value / (double{share} * d.probability);
             magnitude += glm::length(value);
             if (!tracer.occluded(term.shadow)) sum += value;
-            uncertain = uncertain || tracer.occlusion_is_borderline(
-                                         term.shadow, reference::end_rounding(term.shadow));
+            uncertain =
+                uncertain || tracer.occlusion_is_borderline(
+                                 term.shadow, reference::end_rounding(point.surface, term.shadow));
         }
         const double difference = glm::length(glm::dvec3(run.estimates[item]) - sum);
         const double tolerance = 1e-3 * magnitude + darkest;

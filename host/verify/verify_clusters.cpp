@@ -90,7 +90,7 @@ Check Verifier::contributions() {
                       found == 0 && expected.value == 0);
         if (found == 0 || expected.value == 0 || (matrix_[i] < 0) == expected.hidden) continue;
         if (tracer_.occlusion_is_borderline(expected.shadow,
-                                            reference::end_rounding(expected.shadow)))
+                                            reference::end_rounding(surface, expected.shadow)))
             ++check.borderline;
         else
             check.compare(2, 1, where + ": visibility");
