@@ -35,6 +35,7 @@ struct Emission {
     glm::dvec3 light;    // illuminance at normal incidence, lx
     bool infinite = false;
     double solid_angle = 0;  // of a light with area, sr
+    double turned = 0;       // by how much rounding moves the target about the light, m
 };
 
 double range_window(double distance, double range) {
@@ -93,6 +94,11 @@ Emission oriented(const Light& light, const glm::dvec3& position) {
                       glm::dvec3(light.emission), light.edge.w, false);
 }
 
+// Of the cross product of an area's sides, m2: each part is a difference of two products.
+double normal_rounding(const Light& light) {
+    return 2 * epsilon * glm::length(glm::dvec3(light.axis)) * glm::length(glm::dvec3(light.edge));
+}
+
 Emission quad(const Light& light, const glm::dvec3& position, const glm::dvec2& u,
               const LightShift& shift) {
     const glm::dvec3 e1(light.axis);
@@ -103,6 +109,10 @@ Emission quad(const Light& light, const glm::dvec3& position, const glm::dvec2& 
     Emission e = lambertian(position, glm::dvec3(light.position) + u.x * e1 + u.y * e2, n / area,
                             glm::dvec3(area), light.edge.w, light.axis.w != 0);
     e.solid_angle = e.light.x;
+    // On which side the target is may be in doubt, too.
+    const double turn = normal_rounding(light) / area;
+    const bool doubtful = std::abs(glm::dot(e.towards, n)) <= turn * area;
+    e.turned = light.edge.w * (doubtful ? 2 : std::min(2 * turn, 2.0));
     e.light *= glm::dvec3(light.emission);
     return e;
 }
@@ -139,6 +149,16 @@ Emission emission(const Light& light, const glm::dvec3& position, const glm::dve
     return {};
 }
 
+EndShifts end_rounding(const Surface& surface, const Ray& shadow) {
+    const glm::dvec3 end = shadow.origin + (std::isinf(shadow.end) ? 0.0 : 1.0) * shadow.direction;
+    const auto largest = [](const glm::dvec3& v) {
+        return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
+    };
+    const double start =
+        std::max(largest(shadow.origin), double{surface.geometric.w} / OFFSET_SCALE);
+    return {16 * epsilon * start, 16 * epsilon * std::max(start, largest(end))};
+}
+
 Unshadowed shade(const glm::dvec3& position, const Surface& surface, const Material& material,
                  const Camera& camera, const Light& light, const glm::dvec2& u,
                  const LightShift& shift = {}) {
@@ -157,6 +177,8 @@ Unshadowed shade(const glm::dvec3& position, const Surface& surface, const Mater
     out.shadow.origin = position + geometric * static_cast<double>(surface.geometric.w);
     out.shadow.direction = e.infinite ? e.towards : e.target - out.shadow.origin;
     if (!e.infinite) out.shadow.end = 1;
+    out.rounding = end_rounding(surface, out.shadow);
+    out.rounding.end += e.turned;
     return out;
 }
 
@@ -233,27 +255,15 @@ double rounding_slack(const Surface& surface, const Material& material, const Ca
     };
     const auto kind = static_cast<LightKind>(light.position.w);
     const bool has_area = kind == LIGHT_TRIANGLE || kind == LIGHT_QUAD;
-    const double sides = glm::length(glm::dvec3(light.axis)) * glm::length(glm::dvec3(light.edge));
     double slack = 0;
     for (int axis = 0; axis < 3; ++axis) {
         glm::dvec3 along(0);
         along[axis] = 1;
         slack += change(shift * along, {});
-        if (has_area) slack += change(glm::dvec3(0), {2 * epsilon * sides * along, 0});
+        if (has_area) slack += change(glm::dvec3(0), {normal_rounding(light) * along, 0});
     }
     if (kind == LIGHT_SPOT) slack += change(glm::dvec3(0), {glm::dvec3(0), 4 * epsilon});
     return slack;
-}
-
-EndShifts end_rounding(const Surface& surface, const Ray& shadow) {
-    const glm::dvec3 end = shadow.origin + (std::isinf(shadow.end) ? 0.0 : 1.0) * shadow.direction;
-    const auto largest = [](const glm::dvec3& v) {
-        return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
-    };
-    // The origin is off its triangle by a share of that's largest coordinate.
-    const double start =
-        std::max(largest(shadow.origin), double{surface.geometric.w} / OFFSET_SCALE);
-    return {16 * epsilon * start, 16 * epsilon * std::max(start, largest(end))};
 }
 
 }  // namespace manylight::reference

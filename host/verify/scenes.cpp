@@ -26,7 +26,7 @@ Mesh floor_of(float half) { return quad({-half, 0, half}, {2 * half, 0, 0}, {0, 
 VerifyScene all_lights() {
     SceneMaker maker;
     maker.add(floor_of(3), maker.add(glossy({0.5f, 0.5f, 0.55f}, 0.6f, 0.25f)));
-    maker.add(make_ball({-0.6f, 0.6f, 0}, 0.6f), maker.add(glossy({0.9f, 0.6f, 0.3f}, 1, 0.1f)));
+    maker.add(make_ball({-0.6f, 0.6f, 0}, 0.6f), maker.add(glossy({0.9f, 0.6f, 0.3f}, 1, 0.02f)));
     maker.add(box({0.8f, 0, -0.4f}, {0.7f, 1, 0.7f}, 0.5f), maker.add(diffuse({0.3f, 0.7f, 0.4f})));
     maker.add(quad({-0.4f, 2.2f, -0.4f}, {0.5f, 0, 0}, {0, 0, 0.5f}),
               maker.add(emitter({6, 5, 4})));
@@ -76,16 +76,16 @@ void add_maps(SceneMaker& maker, std::uint32_t material, int shift, float scale,
                       levels[(kind / 2 + shift) % 3], scale, linear);
 }
 
-// Colours of all vertices, and tangents of those that have normals.
+// Colours of all vertices, and tangents of those that have normals, of either hand.
 void color_vertices(Scene& scene) {
     for (std::size_t v = 0; v < scene.vertices.size(); ++v) {
         const glm::vec3 p = scene.vertices[v];
         scene.colors.emplace_back(1, 0.7f, 0.6f + 0.3f * std::sin(3 * p.x + p.y), 1);
         const glm::vec3 n = scene.vertex_normals[v];
-        const glm::vec3 along = glm::cross(n, glm::vec3(0.1f, 1, 0.2f));
-        const bool has = n != glm::vec3(0) && glm::length(along) > 0.1f;
-        scene.tangents.push_back(has ? float4(glm::normalize(along), v % 200 < 100 ? 1 : -1)
-                                     : float4(0));
+        const glm::vec3 axis = std::abs(n.y) < 0.9f ? glm::vec3(0, 1, 0) : glm::vec3(1, 0, 0);
+        scene.tangents.push_back(
+            n == glm::vec3(0) ? float4(0)
+                              : float4(glm::normalize(glm::cross(n, axis)), p.x < 0 ? 1 : -1));
     }
 }
 
@@ -99,7 +99,7 @@ VerifyScene textured() {
     polished.roughness = 0.3f;
     polished.reflectance = float4(0.3f, 0.2f, 0.6f, 0);
     const std::uint32_t wall = maker.add(polished);
-    const std::uint32_t ball = maker.add(glossy({0.7f, 0.7f, 0.6f}, 0.5f, 0.4f));
+    const std::uint32_t ball = maker.add(glossy({0.7f, 0.7f, 0.6f}, 0.5f, 0.02f));
     const std::uint32_t lamp = maker.add(emitter({6, 5, 4}));
     const std::uint32_t screen = maker.add([] {
         Material m = emitter({1, 1, 1});
@@ -109,7 +109,8 @@ VerifyScene textured() {
     }());
     maker.add(floor_of(3), floor);
     maker.add(quad({-3, 0, -2}, {6, 0, 0}, {0, 3, 0.2f}), wall);
-    maker.add(make_ball({0.5f, 0.6f, 0.2f}, 0.6f, 8), ball);
+    maker.add(make_ball({0.7f, 0.6f, 0.2f}, 0.6f, 8), ball);
+    maker.add(make_ball({-0.4f, 0.3f, 0.9f}, 0.3f, 6), ball);
     maker.add(quad({-1.5f, 2, -0.6f}, {1, 0, 0}, {0, 0, 1}), lamp);
     maker.add(quad({-1.4f, 0, 0.4f}, {0.6f, 0, -0.2f}, {0, 0.8f, 0}), screen);
     maker.spread_coordinates();
@@ -162,8 +163,8 @@ VerifyScene leaves() {
         if (i % 3 == 0) balls.push_back(glm::scale(place, {1.f, mirror, 0.7f}));
     }
     maker.add_shared(twig, leaf, twigs);
-    maker.add_shared(make_ball({0, 0, 0}, 0.3f, 5), maker.add(glossy({0.8f, 0.6f, 0.5f}, 0, 0.2f)),
-                     balls);
+    maker.add_shared(make_ball({0, 0, 0}, 0.3f, 5),
+                     maker.add(glossy({0.8f, 0.6f, 0.5f}, 1, 0.015f)), balls);
     maker.spread_coordinates();
     for (const std::uint32_t m : {leaf, one_sided})
         maker.add_map(m, MAP_BASE_COLOR, TEXELS_SRGB, LEVELS_BLENDED, 1, true);
@@ -208,7 +209,7 @@ View without_perspective(View view) {
 
 VerifyScene blend_scene(float alpha) {
     SceneMaker maker;
-    maker.add(floor_of(1), maker.add(diffuse({0.5f, 0.5f, 0.5f})));
+    maker.add(floor_of(2), maker.add(diffuse({0.5f, 0.5f, 0.5f})));
     Material shade = diffuse({0.7f, 0.7f, 0.7f});
     shade.alpha = alpha;
     shade.cutoff = -1;
