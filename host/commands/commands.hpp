@@ -61,9 +61,10 @@ struct InspectArguments {
 };
 
 struct VerifyArguments {
-    SceneArguments scene;
+    SceneArguments scene;  // no file: scenes of the program's own
     ClusterOptions clusters;
     uint seed = 1;
+    std::string json;  // file, or - for standard output
 };
 
 struct BuiltinArguments {

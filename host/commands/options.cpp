@@ -72,6 +72,9 @@ CLI::Validator number(double lower, double upper) {
         "");
 }
 
+const CLI::Validator not_empty(
+    [](std::string& file) { return std::string(file.empty() ? "the name is empty" : ""); }, "");
+
 const CLI::Validator power_of_two(
     [](std::string& text) {
         for (const char* allowed : {"8", "16", "32", "64", "128"})
@@ -137,9 +140,7 @@ void add_view(CLI::App& command, SceneArguments& scene, unsigned height = 512) {
 void add_scene(CLI::App& command, SceneArguments& scene, unsigned height = 512) {
     command.add_option("file", scene.file, "glTF 2.0 scene, .gltf or .glb")
         ->required()
-        ->check([](const std::string& file) {
-            return file.empty() ? std::string("the name is empty") : std::string();
-        });
+        ->check(not_empty);
     add_view(command, scene, height);
 }
 
@@ -328,15 +329,27 @@ void add_inspect(CLI::App& app, std::function<int()>& run) {
 
 void add_verify(CLI::App& app, std::function<int()>& run) {
     auto arguments = std::make_shared<VerifyArguments>();
-    CLI::App* command = app.add_subcommand(
-        "verify", "judge every kernel on a device by the scalar reference, on a scene");
-    add_scene(*command, arguments->scene);
+    CLI::App* command =
+        app.add_subcommand("verify", "judge every kernel on a device by the scalar reference");
+    command
+        ->add_option("file", arguments->scene.file,
+                     "glTF 2.0 scene, .gltf or .glb (default: scenes of the program's own that "
+                     "together use every kernel)")
+        ->check(not_empty);
+    add_view(*command, arguments->scene);
+    command->add_option("--json", arguments->json,
+                        "file for all that is found, as JSON; -: standard output, alone");
     command->add_option("--seed", arguments->seed, "of the random numbers")
         ->check(whole(0, largest_uint))
         ->capture_default_str();
     add_clusters(*command, arguments->clusters);
     command->footer(
-        "\nExits with 0 if all stages pass, with 3 otherwise.\n\nExamples:\n"
+        "\nExits with 0 if all stages pass, with 3 otherwise. Says that the device computes "
+        "correctly only\nwhere no kernel and no feature was left out, which takes the program's "
+        "own scenes.\n\nExamples:\n"
+        "  manylight verify\n"
+        "  manylight verify --device intel --json intel.json\n"
+        "  manylight verify --device-form gpu --json - | jq .verdict\n"
         "  manylight verify scene.glb\n"
         "  manylight verify scene.glb --device intel --width 128\n");
     command->callback([&run, arguments] { run = [arguments] { return run_verify(*arguments); }; });

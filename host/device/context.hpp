@@ -34,6 +34,7 @@ struct Device::Context {
     std::vector<std::pair<std::string, cl::Event>> running;  // stage and event of each launch
     std::map<std::string, cl::Program> programs;             // by file and options
     std::vector<std::shared_ptr<Kernel::Built>> waiting;     // kernels that are not built
+    std::set<Launched> launched;                             // see Device::take_launched()
 
     [[nodiscard]] std::string options(const Defines& defines) const;
     // Builds a program once. Throws RuntimeError.
@@ -47,6 +48,7 @@ struct Kernel::Built {
     std::string options;
     std::string stage;
     std::string name;
+    Launched launched;
     std::size_t expected_items = 0;
     cl::Kernel kernel;
     std::vector<std::string> parameters;  // empty until it is built

@@ -5,6 +5,7 @@
 
 #include <cstdlib>
 #include <map>
+#include <utility>
 
 #include "device/context.hpp"
 #include "error.hpp"
@@ -142,6 +143,8 @@ DeviceMemory Device::allocate_bytes(std::size_t bytes, const void* shared) {
 void Device::finish() { context_->collect(); }
 
 std::size_t Device::peak_bytes() const { return context_->peak; }
+
+std::set<Launched> Device::take_launched() { return std::exchange(context_->launched, {}); }
 
 double Device::compile_seconds() const { return context_->compile_seconds; }
 

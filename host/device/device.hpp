@@ -3,10 +3,12 @@
 // Knows no stage.
 #pragma once
 
+#include <compare>
 #include <cstddef>
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <set>
 #include <span>
 #include <string>
 #include <string_view>
@@ -22,6 +24,7 @@ struct DeviceInfo {
     std::string version;   // of OpenCL
     std::string language;  // version of OpenCL C
     std::string driver;
+    std::string type;  // CPU, GPU, accelerator or other
     bool is_gpu = false;
     unsigned compute_units = 0;
     std::uint64_t global_memory = 0;   // bytes
@@ -37,6 +40,9 @@ struct DeviceForm {
     unsigned bvh_width;   // children of a BVH node, and triangles of a block
     unsigned local_size;  // work-items of a group
 };
+
+/// What is publicly known to go wrong with a device's driver, in a sentence; empty: nothing.
+[[nodiscard]] std::string known_trouble(const DeviceInfo& device);
 
 /// The form of that many lanes; 1: what GPUs get, which other devices can run as well.
 [[nodiscard]] DeviceForm form_of(unsigned lanes);
@@ -115,6 +121,15 @@ class Arguments {
 
 /// Integers that a kernel is compiled with (-D).
 using Defines = std::map<std::string, int>;
+
+/// A kernel that was launched, and how it was built.
+struct Launched {
+    std::string file;  // below kernels/
+    std::string kernel;
+    std::string stage;
+    Defines defines;
+    auto operator<=>(const Launched&) const = default;
+};
 
 /// A kernel of a built program; copies share it.
 class Kernel {
@@ -217,6 +232,9 @@ class Device {
 
     /// Seconds spent on compiling kernels, those of their first launch included.
     [[nodiscard]] double compile_seconds() const;
+
+    /// The kernels that were launched for the first time since the last call.
+    [[nodiscard]] std::set<Launched> take_launched();
 
     struct Context;  // OpenCL's objects
 

@@ -62,6 +62,7 @@ Kernel Device::kernel(std::string_view file, const std::string& name, const Defi
     built.options = context_->options(defines);
     built.stage = stage;
     built.name = name;
+    built.launched = {std::string(file), name, stage, defines};
     context_->waiting.push_back(kernel.built_);
     return kernel;
 }
@@ -119,6 +120,7 @@ void Kernel::launch(std::size_t items, const Arguments& arguments) {
             context.compile_seconds +=
                 seconds_since(start) - (context.stage_seconds[built_->stage] - before);
             compiled = true;
+            context.launched.insert(built_->launched);
         }
     } catch (const cl::Error& error) {
         throw RuntimeError("{}: kernel {}: {}", context.info.name, built_->name, describe(error));

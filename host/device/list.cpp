@@ -33,7 +33,12 @@ DeviceInfo describe_device(const cl::Device& device) {
     info.version = trimmed(device.getInfo<CL_DEVICE_VERSION>());
     info.language = trimmed(device.getInfo<CL_DEVICE_OPENCL_C_VERSION>());
     info.driver = trimmed(device.getInfo<CL_DRIVER_VERSION>());
-    info.is_gpu = device.getInfo<CL_DEVICE_TYPE>() & CL_DEVICE_TYPE_GPU;
+    const cl_device_type type = device.getInfo<CL_DEVICE_TYPE>();
+    info.is_gpu = type & CL_DEVICE_TYPE_GPU;
+    info.type = info.is_gpu                         ? "GPU"
+                : type & CL_DEVICE_TYPE_CPU         ? "CPU"
+                : type & CL_DEVICE_TYPE_ACCELERATOR ? "accelerator"
+                                                    : "other";
     info.compute_units = device.getInfo<CL_DEVICE_MAX_COMPUTE_UNITS>();
     info.global_memory = device.getInfo<CL_DEVICE_GLOBAL_MEM_SIZE>();
     info.max_allocation = device.getInfo<CL_DEVICE_MAX_MEM_ALLOC_SIZE>();
@@ -102,6 +107,34 @@ std::size_t default_device(const std::vector<DeviceInfo>& devices) {
 }
 
 }  // namespace
+
+std::string known_trouble(const DeviceInfo& device) {
+    struct Trouble {
+        std::string_view platform;  // or a part of it
+        std::string_view version;   // part of that of OpenCL
+        const char* what;
+    };
+    // With where it is reported.
+    constexpr Trouble table[] = {
+        // github.com/Khanattila/KNLMeansCL/issues/55 (OpenCL 1.1), weldr/lorax/pull/1498 (dropped)
+        {"Clover", "", "Mesa's Clover stays below OpenCL 1.2 and left Mesa in 25.2; try rusticl"},
+        // github.com/pocl/pocl/issues/446
+        {pocl, "pocl 0.", "PoCL before 1.0 miscompiles large kernels"},
+        // github.com/pocl/pocl/issues/2069: right in 6.1, wrong in 7.0 and 7.1
+        {pocl, "PoCL 7.0", "PoCL 7.0 miscompiles some kernels that 6.1 compiles correctly"},
+        {pocl, "PoCL 7.1", "PoCL 7.1 miscompiles some kernels that 6.1 compiles correctly"},
+        // github.com/ddemidov/vexcl/pull/231
+        {"Apple", "", "Apple's compiler breaks functions that return vectors, and some loops"},
+        // github.com/darktable-org/darktable/issues/21662
+        {"rusticl", "",
+         "rusticl fails to compile where Mesa uses the libclc of LLVM 22, unpatched"},
+    };
+    for (const Trouble& trouble : table)
+        if (contains(device.platform, trouble.platform) &&
+            contains(device.version, trouble.version))
+            return trouble.what;
+    return "";
+}
 
 DeviceForm form_of(unsigned lanes) {
     return lanes == 1 ? DeviceForm{1, 1, 4, 64} : DeviceForm{lanes, 16, lanes, 16};

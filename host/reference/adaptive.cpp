@@ -182,7 +182,7 @@ TileCut make_cut(const LightTree& tree, const Scene& scene, const Tracer& tracer
             if (term.value == glm::dvec3(0)) continue;
             rays.traced += 1;
             rays.passed += tracer.occluded(term.shadow) ? 0 : 1;
-            if (tracer.occlusion_is_borderline(term.shadow, end_rounding(term.shadow)))
+            if (tracer.occlusion_is_borderline(term.shadow, term.rounding))
                 out.uncertain = true;
         }
         return rays;

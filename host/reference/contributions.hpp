@@ -12,7 +12,8 @@ namespace manylight::reference {
 struct Contribution {
     double value;  // luminance with V = 1, cd/m2
     bool hidden;
-    Ray shadow;  // meaningful where value > 0
+    Ray shadow;          // meaningful where value > 0
+    EndShifts rounding;  // of the shadow ray
 };
 
 /// Stage contributions: one light at one representative; area lights by their centroid.

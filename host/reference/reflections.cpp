@@ -87,7 +87,8 @@ Reflection reflection(const Scene& scene, const Tracer& tracer, const Camera& ca
         const Triangle triangle(scene, h->triangle);
         return std::pair(triangle.material(), triangle.cell_area());
     };
-    for (Ray moved : Tracer::neighbours(ray, 16 * epsilon * largest)) {
+    const double shift = 16 * epsilon * largest;
+    for (Ray moved : Tracer::neighbours(ray, {shift, shift})) {
         moved.direction = glm::normalize(moved.direction);
         const std::optional<Hit> other = tracer.closest_hit(moved);
         const glm::dvec3 value = reflected(scene, camera, surface, moved, other);

@@ -150,7 +150,7 @@ Estimate estimate(const Scene& scene, const Tracer& tracer, const Camera& camera
             out.value += value;
             out.magnitude += value;
         }
-        if (judge && tracer.occlusion_is_borderline(term.shadow, end_rounding(term.shadow)))
+        if (judge && tracer.occlusion_is_borderline(term.shadow, term.rounding))
             out.borderline += glm::length(value);
     }
     return out;

@@ -23,12 +23,19 @@ double smith_visibility(double alpha, double n_l, double n_v) {
     return term(n_l) * term(n_v);
 }
 
+// By how much rounding may have changed what a light's emission comes from.
+struct LightShift {
+    glm::dvec3 normal = glm::dvec3(0);  // of an area: of the cross product of its sides, m2
+    double cosine = 0;                  // of a spot: between its axis and the direction
+};
+
 struct Emission {
     glm::dvec3 towards;  // unit, to the light
     glm::dvec3 target;   // end of the shadow ray
     glm::dvec3 light;    // illuminance at normal incidence, lx
     bool infinite = false;
     double solid_angle = 0;  // of a light with area, sr
+    double turned = 0;       // by how much rounding moves the target about the light, m
 };
 
 double range_window(double distance, double range) {
@@ -49,9 +56,9 @@ Emission punctual(const Light& light, const glm::dvec3& position) {
     return e;
 }
 
-Emission spot(const Light& light, const glm::dvec3& position) {
+Emission spot(const Light& light, const glm::dvec3& position, const LightShift& shift) {
     Emission e = punctual(light, position);
-    const double cosine = glm::dot(-e.towards, glm::dvec3(light.axis));
+    const double cosine = glm::dot(-e.towards, glm::dvec3(light.axis)) + shift.cosine;
     const double cone = std::clamp(cosine * light.edge.x + light.edge.y, 0.0, 1.0);
     e.light *= cone * cone;
     return e;
@@ -87,54 +94,77 @@ Emission oriented(const Light& light, const glm::dvec3& position) {
                       glm::dvec3(light.emission), light.edge.w, false);
 }
 
-Emission quad(const Light& light, const glm::dvec3& position, const glm::dvec2& u) {
+// Of the cross product of an area's sides, m2: each part is a difference of two products.
+double normal_rounding(const Light& light) {
+    return 2 * epsilon * glm::length(glm::dvec3(light.axis)) * glm::length(glm::dvec3(light.edge));
+}
+
+Emission quad(const Light& light, const glm::dvec3& position, const glm::dvec2& u,
+              const LightShift& shift) {
     const glm::dvec3 e1(light.axis);
     const glm::dvec3 e2(light.edge);
-    const glm::dvec3 n = glm::cross(e1, e2);
+    const glm::dvec3 n = glm::cross(e1, e2) + shift.normal;
     const double area = glm::length(n);
     // With radiance 1, what is received is the solid angle.
     Emission e = lambertian(position, glm::dvec3(light.position) + u.x * e1 + u.y * e2, n / area,
                             glm::dvec3(area), light.edge.w, light.axis.w != 0);
     e.solid_angle = e.light.x;
+    // On which side the target is may be in doubt, too.
+    const double turn = normal_rounding(light) / area;
+    const bool doubtful = std::abs(glm::dot(e.towards, n)) <= turn * area;
+    e.turned = light.edge.w * (doubtful ? 2 : std::min(2 * turn, 2.0));
     e.light *= glm::dvec3(light.emission);
     return e;
 }
 
 // Half a parallelogram.
-Emission triangle(const Light& light, const glm::dvec3& position, glm::dvec2 u) {
+Emission triangle(const Light& light, const glm::dvec3& position, glm::dvec2 u,
+                  const LightShift& shift) {
     // Which half of the square is decided in single precision.
     if (static_cast<float>(u.x) + static_cast<float>(u.y) > 1) u = 1.0 - u;
-    Emission e = quad(light, position, u);
+    Emission e = quad(light, position, u, shift);
     e.light /= 2;
     e.solid_angle /= 2;
     return e;
 }
 
-Emission emission(const Light& light, const glm::dvec3& position, const glm::dvec2& u) {
+Emission emission(const Light& light, const glm::dvec3& position, const glm::dvec2& u,
+                  const LightShift& shift = {}) {
     switch (static_cast<LightKind>(light.position.w)) {
         case LIGHT_POINT:
             return punctual(light, position);
         case LIGHT_SPOT:
-            return spot(light, position);
+            return spot(light, position, shift);
         case LIGHT_DIRECTIONAL:
             return directional(light);
         case LIGHT_ORIENTED:
             return oriented(light, position);
         case LIGHT_TRIANGLE:
-            return triangle(light, position, u);
+            return triangle(light, position, u, shift);
         case LIGHT_QUAD:
-            return quad(light, position, u);
+            return quad(light, position, u, shift);
         case light_kind_count:
             break;
     }
     return {};
 }
 
+EndShifts end_rounding(const Surface& surface, const Ray& shadow) {
+    const glm::dvec3 end = shadow.origin + (std::isinf(shadow.end) ? 0.0 : 1.0) * shadow.direction;
+    const auto largest = [](const glm::dvec3& v) {
+        return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
+    };
+    const double start =
+        std::max(largest(shadow.origin), double{surface.geometric.w} / OFFSET_SCALE);
+    return {16 * epsilon * start, 16 * epsilon * std::max(start, largest(end))};
+}
+
 Unshadowed shade(const glm::dvec3& position, const Surface& surface, const Material& material,
-                 const Camera& camera, const Light& light, const glm::dvec2& u) {
+                 const Camera& camera, const Light& light, const glm::dvec2& u,
+                 const LightShift& shift = {}) {
     const glm::dvec3 normal = glm::normalize(glm::dvec3(surface.normal));
     const glm::dvec3 geometric(surface.geometric);
-    const Emission e = emission(light, position, u);
+    const Emission e = emission(light, position, u, shift);
     Unshadowed out;
     out.value = glm::dvec3(0);
     if (e.light == glm::dvec3(0)) return out;
@@ -147,6 +177,8 @@ Unshadowed shade(const glm::dvec3& position, const Surface& surface, const Mater
     out.shadow.origin = position + geometric * static_cast<double>(surface.geometric.w);
     out.shadow.direction = e.infinite ? e.towards : e.target - out.shadow.origin;
     if (!e.infinite) out.shadow.end = 1;
+    out.rounding = end_rounding(surface, out.shadow);
+    out.rounding.end += e.turned;
     return out;
 }
 
@@ -211,26 +243,27 @@ double rounding_slack(const Surface& surface, const Material& material, const Ca
     const double to_camera = glm::length(glm::dvec3(camera.origin) - position);
     const double shift = 8 * epsilon * std::max({largest, to_light, to_camera});
     const glm::dvec3 centre = shade(position, surface, material, camera, light, u).value;
+    const auto change = [&](const glm::dvec3& step, const LightShift& light_shift) {
+        double most = 0;
+        for (const double sign : {-1.0, 1.0}) {
+            const LightShift to{sign * light_shift.normal, sign * light_shift.cosine};
+            const glm::dvec3 value =
+                shade(position + sign * step, surface, material, camera, light, u, to).value;
+            most = std::max(most, glm::length(value - centre));
+        }
+        return most;
+    };
+    const auto kind = static_cast<LightKind>(light.position.w);
+    const bool has_area = kind == LIGHT_TRIANGLE || kind == LIGHT_QUAD;
     double slack = 0;
     for (int axis = 0; axis < 3; ++axis) {
-        double largest_change = 0;
-        for (const double step : {-shift, shift}) {
-            glm::dvec3 moved = position;
-            moved[axis] += step;
-            const glm::dvec3 value = shade(moved, surface, material, camera, light, u).value;
-            largest_change = std::max(largest_change, glm::length(value - centre));
-        }
-        slack += largest_change;
+        glm::dvec3 along(0);
+        along[axis] = 1;
+        slack += change(shift * along, {});
+        if (has_area) slack += change(glm::dvec3(0), {normal_rounding(light) * along, 0});
     }
+    if (kind == LIGHT_SPOT) slack += change(glm::dvec3(0), {glm::dvec3(0), 4 * epsilon});
     return slack;
-}
-
-double end_rounding(const Ray& shadow) {
-    const glm::dvec3 end = shadow.origin + (std::isinf(shadow.end) ? 0.0 : 1.0) * shadow.direction;
-    double largest = 0;
-    for (int axis = 0; axis < 3; ++axis)
-        largest = std::max({largest, std::abs(shadow.origin[axis]), std::abs(end[axis])});
-    return 16 * epsilon * largest;
 }
 
 }  // namespace manylight::reference

@@ -38,18 +38,20 @@ struct Brdf {
 struct Unshadowed {
     glm::dvec3 value;  // f Le G of paper eq. (1), cd/m2
     Ray shadow;        // the segment to be free
+    // How far single precision moves its ends, m: by 16 units in the last place of their
+    // coordinates, the start by those of the triangle that it is off as well, and the end, which is
+    // off an area along that's normal, by what rounding does to the normal.
+    EndShifts rounding{0, 0};
 };
 [[nodiscard]] Unshadowed unshadowed(const Surface& surface, const Material& material,
                                     const Camera& camera, const Light& light, const glm::dvec2& u);
 
-/// By how much rounding of the surface's position and of directions to single precision can change
-/// the value of unshadowed(): the changes under shifts of the position along each axis by 8 units
-/// in the last place of the coordinates and of the distance to the light, added up.
+/// By how much rounding to single precision can change the value of unshadowed(): the changes under
+/// shifts of the position along each axis by 8 units in the last place of the coordinates and of
+/// the distance to the light, of an area's normal (a cross product) by 2 units of the product of
+/// its sides, and of the cosine to a spot's axis by 4 units, added up.
 [[nodiscard]] double rounding_slack(const Surface& surface, const Material& material,
                                     const Camera& camera, const Light& light, const glm::dvec2& u);
-
-/// How far single precision moves the ends of a shadow ray, m.
-[[nodiscard]] double end_rounding(const Ray& shadow);
 
 [[nodiscard]] inline double luminance(const glm::dvec3& rgb) {
     return 0.2126 * rgb.r + 0.7152 * rgb.g + 0.0722 * rgb.b;

@@ -68,7 +68,7 @@ int Tracer::build(uint begin, uint end) {
 }
 
 // Moeller and Trumbore (1997).
-void Tracer::test(uint triangle, const Ray& ray, std::optional<Hit>& best) const {
+void Tracer::test(uint triangle, const Ray& ray, std::optional<Hit>& best, double margin) const {
     const Triangle tested(scene_, triangle);
     const glm::dvec3 v0 = tested.corner(0);
     const glm::dvec3 e1 = tested.corner(1) - v0;
@@ -77,11 +77,17 @@ void Tracer::test(uint triangle, const Ray& ray, std::optional<Hit>& best) const
     const double determinant = glm::dot(e1, p);
     if (determinant == 0) return;
     const glm::dvec3 s = ray.origin - v0;
+    double beyond = 0;  // an edge, as a weight of the vertex across
+    if (margin > 0) {
+        const double far = std::max({glm::length(s), glm::length(s - e1), glm::length(s - e2)});
+        const double edge = std::max({glm::length(e1), glm::length(e2), glm::length(e2 - e1)});
+        beyond = margin * far * edge * glm::length(ray.direction) / std::abs(determinant);
+    }
     const double u = glm::dot(s, p) / determinant;
-    if (u < 0 || u > 1) return;
+    if (u < -beyond || u > 1 + beyond) return;
     const glm::dvec3 q = glm::cross(s, e1);
     const double v = glm::dot(ray.direction, q) / determinant;
-    if (v < 0 || u + v > 1) return;
+    if (v < -beyond || u + v > 1 + beyond) return;
     const double t = glm::dot(e2, q) / determinant;
     const Hit hit{triangle, t, u, v};
     if (t > 0 && t < (best ? best->t : ray.end) && is_there(ray, hit)) best = hit;
@@ -134,27 +140,34 @@ std::optional<Hit> Tracer::hit_of(uint triangle, const Ray& ray) const {
     return hit;
 }
 
-std::vector<Ray> Tracer::neighbours(const Ray& ray, double distance) {
+std::optional<Hit> Tracer::hit_near(uint triangle, const Ray& ray) const {
+    std::optional<Hit> hit;
+    test(triangle, ray, hit, 2e-6);  // twice the kernels' margin, whose test is rounded
+    return hit;
+}
+
+std::vector<Ray> Tracer::neighbours(const Ray& ray, EndShifts shifts) {
     std::vector<Ray> rays;
     const double scale = std::isinf(ray.end) ? glm::length(ray.direction) : 1;
     for (const double size : {1.0, 0.5, 0.25, 0.125, 0.0625})
         for (int k = 0; k < 64; ++k) {
-            const auto corner_of = [&](int bits) {
+            const auto corner_of = [&](int bits, double distance) {
                 return glm::dvec3(bits & 1 ? 1 : -1, bits & 2 ? 1 : -1, bits & 4 ? 1 : -1) *
                        (size * distance);
             };
             Ray moved = ray;
-            moved.origin += corner_of(k);
-            // The far end moves by as much, or the direction by as much per unit of length.
-            moved.direction += (corner_of(k >> 3) - corner_of(k)) * scale;
+            const glm::dvec3 step = corner_of(k, shifts.origin);
+            moved.origin += step;
+            // The far end moves, or the direction by as much per unit of length.
+            moved.direction += (corner_of(k >> 3, shifts.end) - step) * scale;
             rays.push_back(moved);
         }
     return rays;
 }
 
-bool Tracer::occlusion_is_borderline(const Ray& ray, double distance) const {
+bool Tracer::occlusion_is_borderline(const Ray& ray, EndShifts shifts) const {
     const bool expected = occluded(ray);
-    for (const Ray& moved : neighbours(ray, distance))
+    for (const Ray& moved : neighbours(ray, shifts))
         if (occluded(moved) != expected) return true;
     return false;
 }

@@ -20,6 +20,11 @@ struct Ray {
     glm::dvec3 direction_change[2] = {glm::dvec3(0), glm::dvec3(0)};
 };
 
+/// By how much rounding may move a segment's ends, along each axis.
+struct EndShifts {
+    double origin, end;
+};
+
 struct Hit {
     uint triangle;
     double t, u, v;  // u, v: weights of vertices 1 and 2
@@ -36,14 +41,19 @@ class Tracer {
     /// Where a ray hits one triangle.
     [[nodiscard]] std::optional<Hit> hit_of(uint triangle, const Ray& ray) const;
 
+    /// Where a ray meets a triangle's plane, in the triangle or beyond its edges by no more than
+    /// single precision makes of it (kernels/lib/bvh.h), so that no ray passes between two
+    /// triangles that share an edge.
+    [[nodiscard]] std::optional<Hit> hit_near(uint triangle, const Ray& ray) const;
+
     /// The same by testing every triangle: what the tree itself is checked against.
     [[nodiscard]] std::optional<Hit> closest_hit_of_all(const Ray& ray) const;
 
-    /// Rays that single precision cannot tell from `ray`: both ends moved by up to `distance`.
-    [[nodiscard]] static std::vector<Ray> neighbours(const Ray& ray, double distance);
+    /// Rays that single precision cannot tell from `ray`: its ends are moved by up to `shifts`.
+    [[nodiscard]] static std::vector<Ray> neighbours(const Ray& ray, EndShifts shifts);
 
     /// Whether some neighbour of the ray is occluded and some is not.
-    [[nodiscard]] bool occlusion_is_borderline(const Ray& ray, double distance) const;
+    [[nodiscard]] bool occlusion_is_borderline(const Ray& ray, EndShifts shifts) const;
 
   private:
     [[nodiscard]] bool is_there(const Ray& ray, const Hit& hit) const;
@@ -53,7 +63,8 @@ class Tracer {
         int left = -1, right = -1;  // nodes; -1 for a leaf
     };
     int build(uint begin, uint end);
-    void test(uint triangle, const Ray& ray, std::optional<Hit>& best) const;
+    // `margin`: see hit_near(), as a share of the corners' distance.
+    void test(uint triangle, const Ray& ray, std::optional<Hit>& best, double margin = 0) const;
 
     const Scene& scene_;
     std::vector<uint> order_;  // triangles

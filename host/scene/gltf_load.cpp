@@ -462,18 +462,6 @@ class Loader {
                              scene_.file, farthest);
     }
 
-    static Instance make_instance(const glm::dmat4& to_world) {
-        Instance in{};
-        const glm::mat4 rows(glm::transpose(to_world));
-        for (int k = 0; k < 3; ++k) in.to_world[k] = rows[k];
-        const glm::dmat3 linear = glm::transpose(
-            glm::dmat3(glm::dvec3(rows[0]), glm::dvec3(rows[1]), glm::dvec3(rows[2])));
-        const glm::dmat3 inverse = glm::transpose(glm::inverse(linear));
-        for (int k = 0; k < 3; ++k) in.to_object[k] = float4(glm::vec3(inverse[k]), 0);
-        in.mirrored = glm::determinant(linear) < 0 ? 1 : 0;
-        return in;
-    }
-
     void add_camera(int index, const glm::dmat4& to_world) {
         const tinygltf::Node& node = model_.nodes[index];
         const tinygltf::Camera& camera = model_.cameras[node.camera];

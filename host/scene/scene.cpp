@@ -23,6 +23,18 @@ View frame_all(const Bounds& bounds) {
 
 }  // namespace
 
+Instance make_instance(const glm::dmat4& to_world) {
+    Instance in{};
+    const glm::mat4 rows(glm::transpose(to_world));
+    for (int k = 0; k < 3; ++k) in.to_world[k] = rows[k];
+    const glm::dmat3 linear = glm::transpose(
+        glm::dmat3(glm::dvec3(rows[0]), glm::dvec3(rows[1]), glm::dvec3(rows[2])));
+    const glm::dmat3 inverse = glm::transpose(glm::inverse(linear));
+    for (int k = 0; k < 3; ++k) in.to_object[k] = float4(glm::vec3(inverse[k]), 0);
+    in.mirrored = glm::determinant(linear) < 0 ? 1 : 0;
+    return in;
+}
+
 bool has_map(const Scene& scene, std::size_t material, MapKind kind) {
     return !scene.maps.empty() &&
            scene.maps[MAP_KIND_COUNT * material + kind].texture != NO_TEXTURE;

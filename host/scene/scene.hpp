@@ -52,6 +52,9 @@ struct Bounds {
     return {glm::dot(in.to_world[0], v), glm::dot(in.to_world[1], v), glm::dot(in.to_world[2], v)};
 }
 
+/// The place that a matrix says; `first`, `stored` and `mesh` are unset.
+[[nodiscard]] Instance make_instance(const glm::dmat4& to_world);
+
 /// A mesh that is stored once and stands where instances say, in a frame of its own. It gives no
 /// light.
 struct SharedMesh {

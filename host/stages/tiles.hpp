@@ -14,6 +14,16 @@ namespace manylight {
     return {width, height, size, columns, 0, columns * ((height + size - 1) / size)};
 }
 
+/// Those in the image's middle, `most` of them at most.
+[[nodiscard]] inline Tiles middle_tiles(unsigned width, unsigned height, unsigned size,
+                                        unsigned most) {
+    Tiles tiles = all_tiles(width, height, size);
+    if (tiles.count <= most) return tiles;
+    tiles.first = (tiles.count - most) / 2;
+    tiles.count = most;
+    return tiles;
+}
+
 /// Work-items of a launch over a run of tiles.
 [[nodiscard]] inline std::size_t item_count(const Tiles& tiles) {
     return std::size_t{tiles.count} * tiles.size * tiles.size;

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: MIT
+#include "verify/verify_all.hpp"
+
+#include <algorithm>
+
+#include "verify/scenes.hpp"
+
+namespace manylight {
+
+bool Verification::passed() const {
+    return std::ranges::all_of(scenes, [](const SceneChecks& scene) {
+        return std::ranges::all_of(scene.checks, [](const Check& c) { return c.passed(); });
+    });
+}
+
+Verification verify_all(Device device, const VerifyOptions& options,
+                        const std::function<void(double)>& progress) {
+    Verification out{{}, Coverage(device.form().lanes > 1)};
+    const std::vector<VerifyScene> scenes = verify_scenes();
+    (void)device.take_launched();
+    const auto take = [&](SceneChecks found) {
+        out.coverage.add(device.take_launched(), found.checks);
+        out.scenes.push_back(std::move(found));
+        progress(static_cast<double>(out.scenes.size()) /
+                 (2 * static_cast<double>(scenes.size()) + 1));
+    };
+    for (const VerifyScene& made : scenes) {
+        SceneChecks found{made.name,
+                          made.summary,
+                          made.scene.seen_triangle_count(),
+                          made.scene.lights.size(),
+                          options.width,
+                          options.height,
+                          {}};
+        const auto verifier = [&](const View& view) {
+            const Camera camera = make_camera(view, options.width, options.height);
+            return Verifier(device, made.scene, camera, options);
+        };
+        found.checks = verifier(made.view).all();
+        take(found);
+        // What a camera changes: where rays start, and which kernel traces them.
+        Verifier flat = verifier(without_perspective(made.view));
+        found.name += ", orthographic";
+        found.checks = {flat.gbuffer(false), flat.gbuffer(true), flat.contributions(),
+                        flat.reflections()};
+        take(found);
+    }
+    take({"veil", "a shade that is there by chance", 4, 1, 32, 32,
+          check_blend(device, options.seed)});
+    return out;
+}
+
+}  // namespace manylight

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: MIT
+// All kernels on scenes of the program's own.
+#pragma once
+
+#include <functional>
+
+#include "verify/coverage.hpp"
+
+namespace manylight {
+
+/// What was found on one scene.
+struct SceneChecks {
+    std::string name;  // a built-in scene's, or the file's
+    std::string summary;
+    std::size_t triangles = 0, lights = 0;
+    unsigned width = 0, height = 0;
+    std::vector<Check> checks;
+};
+
+/// What was found on a device.
+struct Verification {
+    std::vector<SceneChecks> scenes;
+    Coverage coverage;
+
+    [[nodiscard]] bool passed() const;
+};
+
+/// Judges every stage on every scene of verify_scenes(), each seen with perspective and without,
+/// and the chance by which rays pass what is partly there; images have the options' size.
+/// `progress` gets the share that is done.
+[[nodiscard]] Verification verify_all(Device device, const VerifyOptions& options,
+                                      const std::function<void(double)>& progress);
+
+/// Stages gbuffer and samples where rays pass by chance, told from the mean.
+[[nodiscard]] std::vector<Check> check_blend(Device device, uint seed);
+
+}  // namespace manylight
