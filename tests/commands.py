@@ -7,6 +7,7 @@ import base64
 import json
 import os
 import pathlib
+import re
 import signal
 import struct
 import subprocess
@@ -499,8 +500,46 @@ class CommandTest(unittest.TestCase):
         for stage in ("layout", "random", "gbuffer", "clusters", "representatives", "contributions",
                       "refinement", "pdf", "samples", "accumulate"):
             self.assertIn(stage, run.stdout)
-        self.assertIn("computes correctly", run.stdout)
+        self.assertIn("driver ", run.stdout.splitlines()[0])
+        self.assertIn("No error was found in what this scene tests. Not tested:", run.stdout)
+        self.assertIn("stage reflections", run.stdout)
+        self.assertNotIn("computes correctly", run.stdout)
         self.assertNotIn("FAIL", run.stdout)
+
+    def test_verify_everything(self):
+        run = self.run_program("verify", "--width", 40, "--json", "verify.json")
+        self.assertIn("driver ", run.stdout.splitlines()[0])
+        self.assertEqual(run.stdout.splitlines()[-1], "The device computes correctly.")
+        found = json.loads((self.folder / "verify.json").read_text())
+        for name in ("device", "platform", "opencl", "driver", "version"):
+            self.assertTrue(found[name], name)
+        self.assertEqual((found["verdict"], found["not_tested"]), ("correct", []))
+        check = found["scenes"][0]["checks"][0]
+        for name in ("stage", "items", "telling", "failed", "borderline", "largest", "tolerance"):
+            self.assertIn(name, check)
+        self.assertEqual(check["verdict"], "pass")
+        kernels = SCENES.parent / "kernels"
+        expected = set()
+        for path in kernels.rglob("*.cl"):
+            text = path.read_text()
+            if '#include "lib/samples.h"' in text:
+                text += (kernels / "lib" / "samples.h").read_text()
+            file = path.relative_to(kernels).as_posix()
+            expected |= {(file, name) for name in re.findall(r"^KERNEL void (\w+)", text, re.M)}
+        self.assertEqual({(k["file"], k["kernel"]) for k in found["kernels"]}, expected)
+        states = {k["kernel"]: k["state"] for k in found["kernels"]}
+        self.assertEqual(states["adaptive_draw"], "tested")
+        self.assertEqual(states["gbuffer_trace_rays"], "tested")
+        self.assertNotIn("not tested", states.values())
+
+    def test_verify_json(self):
+        run = self.run_program("verify", SCENES / "pinhole.glb", "--width", 24, "--json", "-")
+        found = json.loads(run.stdout)
+        self.assertEqual(found["verdict"], "incomplete")
+        self.assertIn("stage reflections", found["not_tested"])
+        self.refuse("verify", "--camera", "front", words=["--camera", "file"])
+        self.refuse("verify", "--json", "none/a.json", words=["--json", "none"])
+        self.refuse("verify", "", words=["name is empty"])
 
     def test_bench(self):
         run = self.run_program("bench", SCENES / "pinhole.glb", "--height", 48, "--rounds", 2,

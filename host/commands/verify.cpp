@@ -66,17 +66,6 @@ void print_table(const Verification& found) {
     }
 }
 
-// Whether nothing failed and nothing is left; otherwise what does, or what is.
-std::string verdict(const Verification& found, bool built_in) {
-    if (!found.passed()) return "The device does NOT compute correctly.";
-    const std::vector<std::string> left = found.coverage.not_tested(built_in);
-    if (left.empty()) return "The device computes correctly.";
-    std::string text = built_in ? "No error was found, but not all was tested:"
-                                : "No error was found in what this scene tests. Not tested:";
-    for (const std::string& what : left) text += "\n  " + what;
-    return text;
-}
-
 json to_json(const Check& c) {
     json out = {{"stage", c.stage},           {"items", c.items},
                 {"telling", c.telling},       {"failed", c.failed},
@@ -114,9 +103,9 @@ json kernels_json(const Coverage& coverage) {
     return out;
 }
 
-json to_json(const Verification& found, const Device& device, bool built_in) {
+json to_json(const Verification& found, const Device& device) {
     const DeviceInfo& info = device.info();
-    const std::vector<std::string> left = found.coverage.not_tested(built_in);
+    const std::vector<std::string> left = found.not_tested();
     json scenes = json::array();
     for (const SceneChecks& scene : found.scenes) {
         json checks = json::array();
@@ -150,7 +139,7 @@ void print_device(const DeviceInfo& info) {
 }
 
 Verification verify_file(const LoadedScene& loaded, Device device, const VerifyOptions& options) {
-    Verification found{{}, Coverage(device.form().lanes > 1)};
+    Verification found{{}, Coverage(device.form().lanes > 1), false};
     SceneChecks scene{loaded.scene.file,
                       "",
                       loaded.scene.seen_triangle_count(),
@@ -229,9 +218,9 @@ int run_verify(const VerifyArguments& arguments) {
         say("\nlargest: the largest difference from the scalar reference, over its tolerance (eps: "
             "2^-23).\nborderline: items that rounding of their rays' ends decides either "
             "way.\n{}\n",
-            verdict(found, built_in));
+            found.verdict());
     }
-    if (!arguments.json.empty()) write_json(arguments.json, to_json(found, device, built_in));
+    if (!arguments.json.empty()) write_json(arguments.json, to_json(found, device));
     return found.passed() ? 0 : 3;
 }
 

@@ -138,6 +138,7 @@ Estimate estimate(const Scene& scene, const Tracer& tracer, const Camera& camera
         const Choice choice = choose(tables, {scene, camera, surface},
                                      {item, sample, sample_count, bits, lights, judge});
         out.uncertain = out.uncertain || choice.borderline;
+        out.undecided += choice.borderline ? 1 : 0;
         if (choice.weight == 0) continue;
         const Light& light = scene.lights[choice.light];
         const glm::dvec2 u(unit_fraction(bits[1]), unit_fraction(bits[2]));
@@ -150,8 +151,10 @@ Estimate estimate(const Scene& scene, const Tracer& tracer, const Camera& camera
             out.value += value;
             out.magnitude += value;
         }
-        if (judge && tracer.occlusion_is_borderline(term.shadow, term.rounding))
+        if (judge && tracer.occlusion_is_borderline(term.shadow, term.rounding)) {
             out.borderline += glm::length(value);
+            ++out.undecided;
+        }
     }
     return out;
 }

@@ -58,6 +58,7 @@ struct Estimate {
     glm::dvec3 magnitude{0};  // sum of the terms' absolute values
     double slack = 0;         // of rounding, where asked for
     double borderline = 0;    // sum of the terms whose visibility rounding decides, where asked for
+    int undecided = 0;        // number of terms that rounding decides, where asked for
     bool uncertain = false;   // rounding may have drawn other lights
 };
 

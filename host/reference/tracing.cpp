@@ -13,6 +13,8 @@
 namespace manylight::reference {
 namespace {
 
+constexpr double epsilon = std::numeric_limits<float>::epsilon();
+
 // Where the segment is inside a box, by slabs; boxes are closed.
 bool meets_box(const Ray& ray, const glm::dvec3& lower, const glm::dvec3& upper, double end) {
     double enter = 0;
@@ -68,7 +70,7 @@ int Tracer::build(uint begin, uint end) {
 }
 
 // Moeller and Trumbore (1997).
-void Tracer::test(uint triangle, const Ray& ray, std::optional<Hit>& best, double margin) const {
+void Tracer::test(uint triangle, const Ray& ray, std::optional<Hit>& best) const {
     const Triangle tested(scene_, triangle);
     const glm::dvec3 v0 = tested.corner(0);
     const glm::dvec3 e1 = tested.corner(1) - v0;
@@ -77,17 +79,11 @@ void Tracer::test(uint triangle, const Ray& ray, std::optional<Hit>& best, doubl
     const double determinant = glm::dot(e1, p);
     if (determinant == 0) return;
     const glm::dvec3 s = ray.origin - v0;
-    double beyond = 0;  // an edge, as a weight of the vertex across
-    if (margin > 0) {
-        const double far = std::max({glm::length(s), glm::length(s - e1), glm::length(s - e2)});
-        const double edge = std::max({glm::length(e1), glm::length(e2), glm::length(e2 - e1)});
-        beyond = margin * far * edge * glm::length(ray.direction) / std::abs(determinant);
-    }
     const double u = glm::dot(s, p) / determinant;
-    if (u < -beyond || u > 1 + beyond) return;
+    if (u < 0 || u > 1) return;
     const glm::dvec3 q = glm::cross(s, e1);
     const double v = glm::dot(ray.direction, q) / determinant;
-    if (v < -beyond || u + v > 1 + beyond) return;
+    if (v < 0 || u + v > 1) return;
     const double t = glm::dot(e2, q) / determinant;
     const Hit hit{triangle, t, u, v};
     if (t > 0 && t < (best ? best->t : ray.end) && is_there(ray, hit)) best = hit;
@@ -140,10 +136,63 @@ std::optional<Hit> Tracer::hit_of(uint triangle, const Ray& ray) const {
     return hit;
 }
 
+std::optional<Tracer::RoundedHit> Tracer::meet_plane(uint triangle, const Ray& ray) const {
+    const Triangle tested(scene_, triangle);
+    const glm::dvec3 v0 = tested.corner(0);
+    const glm::dvec3 e1 = tested.corner(1) - v0;
+    const glm::dvec3 e2 = tested.corner(2) - v0;
+    const glm::dvec3 n = glm::cross(e1, e2);
+    const glm::dvec3 s = ray.origin - v0;
+    const double determinant = -glm::dot(n, ray.direction);
+    if (determinant == 0) return {};
+    const glm::dvec3 q = glm::cross(s, ray.direction) / determinant;
+    RoundedHit met{
+        {triangle, glm::dot(n, s) / determinant, glm::dot(e2, q), -glm::dot(e1, q)}, 0, 0};
+    const double far = std::max({glm::length(s), glm::length(s - e1), glm::length(s - e2)});
+    const double edge = std::max({glm::length(e1), glm::length(e2), glm::length(e2 - e1)});
+    // Twice the kernels' margin (kernels/lib/bvh.h), whose test is rounded.
+    met.beyond = 2e-6 * far * edge * glm::length(ray.direction) / std::abs(determinant);
+    // Of the normal, a cross product, 2 units in the last place of the sides' product, times the
+    // distance; and as much again for what follows.
+    met.along = 8 * epsilon * far * edge * edge / std::abs(determinant);
+    return met;
+}
+
 std::optional<Hit> Tracer::hit_near(uint triangle, const Ray& ray) const {
-    std::optional<Hit> hit;
-    test(triangle, ray, hit, 2e-6);  // twice the kernels' margin, whose test is rounded
-    return hit;
+    const auto met = meet_plane(triangle, ray);
+    if (!met || met->hit.t <= 0 || met->hit.t >= ray.end || met->inside() < -met->beyond) return {};
+    return is_there(ray, met->hit) ? std::optional(met->hit) : std::nullopt;
+}
+
+bool Tracer::rounding_decides(const Ray& ray) const {
+    bool maybe = false;
+    std::vector<int> open;
+    if (root_ >= 0) open.push_back(root_);
+    Ray line = ray;  // a length farther at both ends
+    line.origin -= ray.direction;
+    while (!open.empty()) {
+        const Node& node = nodes_[open.back()];
+        open.pop_back();
+        const glm::dvec3 reach =
+            glm::max(glm::abs(node.lower - ray.origin), glm::abs(node.upper - ray.origin));
+        const glm::dvec3 pad(4e-6 * glm::length(reach));
+        if (!meets_box(line, node.lower - pad, node.upper + pad, ray.end + 2)) continue;
+        if (node.left >= 0) {
+            open.push_back(node.right);
+            open.push_back(node.left);
+            continue;
+        }
+        for (uint i = node.begin; i < node.end; ++i) {
+            const auto met = meet_plane(order_[i], ray);
+            if (!met || met->inside() < -met->beyond) continue;
+            const double t = met->hit.t;
+            if (t < -met->along || t > ray.end + met->along || !is_there(ray, met->hit)) continue;
+            maybe = true;
+            if (met->inside() > met->beyond && t > met->along && t < ray.end - met->along)
+                return false;
+        }
+    }
+    return maybe;
 }
 
 std::vector<Ray> Tracer::neighbours(const Ray& ray, EndShifts shifts) {
@@ -166,6 +215,7 @@ std::vector<Ray> Tracer::neighbours(const Ray& ray, EndShifts shifts) {
 }
 
 bool Tracer::occlusion_is_borderline(const Ray& ray, EndShifts shifts) const {
+    if (rounding_decides(ray)) return true;
     const bool expected = occluded(ray);
     for (const Ray& moved : neighbours(ray, shifts))
         if (occluded(moved) != expected) return true;

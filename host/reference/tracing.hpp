@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <algorithm>
 #include <glm/glm.hpp>
 #include <limits>
 #include <optional>
@@ -52,7 +53,9 @@ class Tracer {
     /// Rays that single precision cannot tell from `ray`: its ends are moved by up to `shifts`.
     [[nodiscard]] static std::vector<Ray> neighbours(const Ray& ray, EndShifts shifts);
 
-    /// Whether some neighbour of the ray is occluded and some is not.
+    /// Whether single precision decides if the ray is occluded: some neighbour is and some is not,
+    /// or no triangle is surely hit and one may be, near an edge or near the ray's ends, as far as
+    /// rounding goes in the test of a triangle of its shape.
     [[nodiscard]] bool occlusion_is_borderline(const Ray& ray, EndShifts shifts) const;
 
   private:
@@ -63,8 +66,16 @@ class Tracer {
         int left = -1, right = -1;  // nodes; -1 for a leaf
     };
     int build(uint begin, uint end);
-    // `margin`: see hit_near(), as a share of the corners' distance.
-    void test(uint triangle, const Ray& ray, std::optional<Hit>& best, double margin = 0) const;
+    void test(uint triangle, const Ray& ray, std::optional<Hit>& best) const;
+    // A hit of a triangle's plane, and what rounding may do to its weights and to its t.
+    struct RoundedHit {
+        Hit hit;
+        double beyond, along;
+        // By how much all weights are inside.
+        [[nodiscard]] double inside() const { return std::min({hit.u, hit.v, 1 - hit.u - hit.v}); }
+    };
+    [[nodiscard]] std::optional<RoundedHit> meet_plane(uint triangle, const Ray& ray) const;
+    [[nodiscard]] bool rounding_decides(const Ray& ray) const;
 
     const Scene& scene_;
     std::vector<uint> order_;  // triangles

@@ -25,14 +25,15 @@ void Check::skip_borderline() {
     ++borderline;
 }
 
-void Check::excuse_borderline(std::size_t agreeing,
-                              const std::function<bool(std::size_t)>& undecided) {
+void Check::excuse_agreeing(std::size_t agreeing,
+                            const std::function<int(std::size_t)>& undecided) {
     if (passed() || agreeing == 0) return;
     constexpr std::size_t most = 400;
     const std::size_t judged = std::min(agreeing, most);
-    std::size_t count = 0;
-    for (std::size_t i = 0; i < judged; ++i) count += undecided(i * agreeing / judged) ? 1 : 0;
-    excused = count * agreeing / judged;
+    const double before = excused;
+    for (std::size_t i = 0; i < judged; ++i) excuse(undecided(i * agreeing / judged));
+    excused =
+        before + (excused - before) * static_cast<double>(agreeing) / static_cast<double>(judged);
 }
 
 namespace {

@@ -2,6 +2,7 @@
 // Every kernel against its scalar reference, on the same inputs.
 #pragma once
 
+#include <cmath>
 #include <functional>
 #include <optional>
 #include <string>
@@ -20,26 +21,30 @@ struct Check {
     std::size_t telling = 0;         // items whose value is not simply 0
     std::size_t failed = 0;          // items beyond the tolerance
     std::size_t borderline = 0;      // items that rounding of the inputs decides either way
-    std::size_t excused = 0;         // as many may be borderline as rounding might decide otherwise
+    double excused = 0;              // as many may be borderline as rounding explains, see excuse()
     double largest = 0;              // difference over tolerance, of the items that were compared
     std::string tolerance;           // in words, with its reason
     std::string first_failure = {};  // the first failed item and both values
 
     /// Whether the scene says anything about the stage.
     [[nodiscard]] bool tested() const { return telling > 0 || failed > 0; }
-    /// Nothing failed, and no more is borderline than rays that graze edges explain: where more
-    /// than half a percent of all is, no more than agree though rounding decides them, too.
+    /// Nothing failed, and no more is borderline than rays that graze edges explain: half a percent
+    /// of all items, and what is excused.
     [[nodiscard]] bool passed() const {
-        return failed == 0 && borderline <= 2 + items / 200 + excused;
+        return failed == 0 &&
+               static_cast<double>(borderline) <= 2 + static_cast<double>(items) / 200 + excused;
     }
     /// Counts an item; `difference` beyond `tolerance` fails it. `zero`: both values are 0.
     void compare(double difference, double tolerance, const std::string& item, bool zero = false);
     void compare_exact(bool equal, const std::string& item) { compare(equal ? 0 : 2, 1, item); }
     /// Counts an item that rounding decides either way.
     void skip_borderline();
-    /// Estimates `excused`, where it matters, from a part of the items that agree: whether
-    /// `undecided` says of item i that rounding decides it.
-    void excuse_borderline(std::size_t agreeing, const std::function<bool(std::size_t)>& undecided);
+    /// Excuses an item by its number of terms that rounding decides: by the chance that some differ
+    /// where three quarters of such terms do.
+    void excuse(int undecided) { excused += 1 - std::pow(0.25, undecided); }
+    /// Excuses items that agree, where that matters, from a part of them: `undecided` says of item
+    /// i how many of its terms rounding decides.
+    void excuse_agreeing(std::size_t agreeing, const std::function<int(std::size_t)>& undecided);
 };
 
 struct VerifyOptions {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "verify/verify_all.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "verify/scenes.hpp"
@@ -13,9 +15,22 @@ bool Verification::passed() const {
     });
 }
 
+// A single scene has one form of each kernel: what is left out of it is compiled out.
+std::vector<std::string> Verification::not_tested() const { return coverage.not_tested(complete); }
+
+std::string Verification::verdict() const {
+    if (!passed()) return "The device does NOT compute correctly.";
+    const std::vector<std::string> left = not_tested();
+    if (left.empty()) return "The device computes correctly.";
+    return fmt::format("{} Not tested:\n  {}",
+                       complete ? "No error was found, but the test has gaps."
+                                : "No error was found in what this scene tests.",
+                       fmt::join(left, "\n  "));
+}
+
 Verification verify_all(Device device, const VerifyOptions& options,
                         const std::function<void(double)>& progress) {
-    Verification out{{}, Coverage(device.form().lanes > 1)};
+    Verification out{{}, Coverage(device.form().lanes > 1), true};
     const std::vector<VerifyScene> scenes = verify_scenes();
     (void)device.take_launched();
     const auto take = [&](SceneChecks found) {

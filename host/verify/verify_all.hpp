@@ -22,7 +22,15 @@ struct Verification {
     std::vector<SceneChecks> scenes;
     Coverage coverage;
 
+    bool complete = false;  // whether the scenes are meant to leave nothing out
+
+    /// No check failed.
     [[nodiscard]] bool passed() const;
+    /// What no scene told anything about, in words.
+    [[nodiscard]] std::vector<std::string> not_tested() const;
+    /// Says that the device computes correctly only where nothing failed and nothing was left out;
+    /// otherwise that something failed, or what was left out.
+    [[nodiscard]] std::string verdict() const;
 };
 
 /// Judges every stage on every scene of verify_scenes(), each seen with perspective and without,
@@ -30,6 +38,11 @@ struct Verification {
 /// `progress` gets the share that is done.
 [[nodiscard]] Verification verify_all(Device device, const VerifyOptions& options,
                                       const std::function<void(double)>& progress);
+
+/// Counts an item: a count among trials of a known chance. 5 standard deviations, its tolerance,
+/// are exceeded once in two million.
+void compare_share(Check& check, double count, double trials, double chance,
+                   const std::string& what);
 
 /// Stages gbuffer and samples where rays pass by chance, told from the mean.
 [[nodiscard]] std::vector<Check> check_blend(Device device, uint seed);

@@ -18,15 +18,14 @@ constexpr unsigned side = 32;
 constexpr uint samples = 16;
 constexpr uint floor_triangles = 2;  // the first of the scene; the shade's follow
 
-// A count among trials of a known chance; 5 standard deviations are exceeded once in two million.
+}  // namespace
+
 void compare_share(Check& check, double count, double trials, double chance,
                    const std::string& what) {
     const double deviation = std::sqrt(trials * chance * (1 - chance));
     check.compare(std::abs(count - chance * trials), 5 * deviation,
                   fmt::format("{}: {} of {}, not {} in all", what, count, trials, chance));
 }
-
-}  // namespace
 
 std::vector<Check> check_blend(Device device, uint seed) {
     Check hits{.stage = "gbuffer (by chance)", .tolerance = "5 standard deviations"};

@@ -92,13 +92,14 @@ Check Verifier::contributions() {
         if (found == 0 || expected.value == 0) continue;
         if ((matrix_[i] < 0) == expected.hidden)
             agreeing.push_back(expected);
-        else if (tracer_.occlusion_is_borderline(expected.shadow, expected.rounding))
+        else if (tracer_.occlusion_is_borderline(expected.shadow, expected.rounding)) {
             ++check.borderline;
-        else
+            check.excuse(1);
+        } else
             check.compare(2, 1, where + ": visibility");
     }
-    check.excuse_borderline(agreeing.size(), [&](std::size_t i) {
-        return tracer_.occlusion_is_borderline(agreeing[i].shadow, agreeing[i].rounding);
+    check.excuse_agreeing(agreeing.size(), [&](std::size_t i) {
+        return tracer_.occlusion_is_borderline(agreeing[i].shadow, agreeing[i].rounding) ? 1 : 0;
     });
     const std::vector<RowSum> totals = clustering_.totals();
     for (std::size_t row = 0; row < totals.size(); ++row) {

@@ -139,12 +139,11 @@ Check Verifier::samples(const Sampler& sampler) {
         if (difference() > tolerance / 4) {
             expected = judge(true);
             tolerance += expected.slack;
-            if (difference() > tolerance && expected.uncertain) return check.skip_borderline();
-            // Of all lights, some rays are nearly always; contributions judges these one by one.
-            if (sampler.all_lights && expected.borderline <= 0.1 * glm::length(expected.magnitude))
-                tolerance += expected.borderline;
-            if (difference() > tolerance && difference() <= tolerance + expected.borderline)
+            if (difference() > tolerance &&
+                (expected.uncertain || difference() <= tolerance + expected.borderline)) {
+                check.excuse(expected.undecided);
                 return check.skip_borderline();
+            }
         }
         if (difference() <= tolerance) agreeing.push_back({x, y, item});
         check.compare(difference(), tolerance,
@@ -152,10 +151,9 @@ Check Verifier::samples(const Sampler& sampler) {
                                   show(expected.value)),
                       found[item].r == 0 && expected.value.r == 0);
     });
-    check.excuse_borderline(agreeing.size(), [&](std::size_t i) {
+    check.excuse_agreeing(agreeing.size(), [&](std::size_t i) {
         const auto [x, y, item] = agreeing[i];
-        const reference::Estimate close = judge_pixel(x, y, item, true);
-        return close.uncertain || close.borderline > 1e-4 * glm::length(close.magnitude);
+        return judge_pixel(x, y, item, true).undecided;
     });
     return check;
 }
