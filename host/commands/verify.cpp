@@ -156,7 +156,7 @@ Verification verify_file(const LoadedScene& loaded, Device device, const VerifyO
 void write_json(const std::string& path, const json& out) {
     const std::string text = out.dump(2, ' ', true, json::error_handler_t::replace) + "\n";
     if (path == "-")
-        say("{}", text);
+        std::fwrite(text.data(), 1, text.size(), stdout);  // plain ASCII, of many lines
     else
         write_file(path, std::as_bytes(std::span(text)));
 }
