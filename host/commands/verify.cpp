@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 #include <span>
+#include <sstream>
 
 #include "commands/commands.hpp"
 #include "error.hpp"
@@ -217,8 +218,9 @@ int run_verify(const VerifyArguments& arguments) {
         print_table(found);
         say("\nlargest: the largest difference from the scalar reference, over its tolerance (eps: "
             "2^-23).\nborderline: items that rounding of their rays' ends decides either "
-            "way.\n{}\n",
-            found.verdict());
+            "way.\n");
+        std::istringstream verdict(found.verdict());
+        for (std::string line; std::getline(verdict, line);) say("{}\n", line);
     }
     if (!arguments.json.empty()) write_json(arguments.json, to_json(found, device));
     return found.passed() ? 0 : 3;
