@@ -254,6 +254,21 @@ TEST(verify, sharp_beam) {
     expect_all_pass(device, scene, view, 48, 36);
 }
 
+// An emitter that some of the floor is in the plane of: what light is there is rounding.
+TEST(verify, emitter_in_its_own_plane) {
+    SceneMaker maker;
+    Mesh floor;
+    floor.add_quad({-2, 0, 2}, {4, 0, 0}, {0, 0, -4});
+    maker.add(floor, maker.add(diffuse(glm::vec3(1))));
+    Mesh lamp;
+    lamp.add_quad({-1, 1, 0}, {2, 0, 0}, {0, std::sin(1.1f), -std::cos(1.1f)});
+    maker.add(lamp, maker.add(emitter(glm::vec3(10), true)));
+    const Scene scene = maker.finish();
+    FOR_EACH_DEVICE(device)
+    for (const unsigned width : {47u, 49u})
+        expect_all_pass(device, scene, look({0, 1.5, 5}, {0, 1.5, 0}, 0.8), width, 37);
+}
+
 // A ground of 200 km of two triangles, whose common edge, as rounded, is centimetres wide.
 TEST(verify, wide_ground) {
     SceneMaker maker;

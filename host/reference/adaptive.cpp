@@ -179,11 +179,14 @@ TileCut make_cut(const LightTree& tree, const Scene& scene, const Tracer& tracer
             const Light& light = tree.lights[tree.nodes[at].first];
             const Unshadowed term =
                 unshadowed(s, scene.materials[s.shading], camera, light, centroid(light));
+            // Whether there is light at all: a light with area is hardly seen in its own plane.
+            if (glm::length(term.value) <=
+                rounding_slack(s, scene.materials[s.shading], camera, light, centroid(light)))
+                out.uncertain = out.uncertain || has_area(light);
             if (term.value == glm::dvec3(0)) continue;
             rays.traced += 1;
             rays.passed += tracer.occluded(term.shadow) ? 0 : 1;
-            if (tracer.occlusion_is_borderline(term.shadow, term.rounding))
-                out.uncertain = true;
+            if (tracer.occlusion_is_borderline(term.shadow, term.rounding)) out.uncertain = true;
         }
         return rays;
     };
@@ -311,6 +314,32 @@ std::vector<double> estimate_visibility(std::span<const Rays> totals,
     return visible;
 }
 
+namespace {
+
+// By how much rounding of a point's height over the plane of a light with area changes the
+// luminance of node_estimate().
+double estimate_rounding(const LightTree& tree, uint index, const Point& point) {
+    const LightNode& node = tree.nodes[index];
+    const Light& light = tree.lights[node.first];
+    if (node.count > 1 || !has_area(light)) return 0;
+    const glm::dvec3 n = glm::cross(glm::dvec3(light.axis), glm::dvec3(light.edge));
+    const glm::dvec3 position(point.surface.position);
+    const double reach = std::max(glm::length(position), glm::length(glm::dvec3(light.position)));
+    const glm::dvec3 step = 4.0 * std::numeric_limits<float>::epsilon() * reach * glm::normalize(n);
+    // A step may be less than the last place of a coordinate: the slope comes from a longer one.
+    constexpr double longer = 64;
+    const auto luminance_at = [&](double steps) {
+        Surface moved = point.surface;
+        moved.position = float4(glm::vec3(position + steps * step), moved.position.w);
+        return luminance(node_estimate(tree, index, {point.scene, point.camera, moved}));
+    };
+    const double here = luminance_at(0);
+    return std::max(std::abs(luminance_at(longer) - here), std::abs(luminance_at(-longer) - here)) /
+           longer;
+}
+
+}  // namespace
+
 std::vector<PixelDraws> draw_nodes(const LightTree& tree, const Scene& scene, const Camera& camera,
                                    std::span<const uint> cut, std::span<const DrawnPixel> pixels,
                                    const Budget& budget) {
@@ -366,11 +395,15 @@ std::vector<PixelDraws> draw_nodes(const LightTree& tree, const Scene& scene, co
         if (!pixel.surface) continue;
         std::vector<double> weights;
         double sum = 0;
+        double estimates_blur = 0;
         for (const Entry& e : list) {
             d.control += pixel.visible[e.slot] * estimate_of(e, pixel);
             weights.push_back(weight_of(e, pixel));
             sum += weights.back();
+            estimates_blur += estimate_rounding(tree, e.node, {scene, camera, *pixel.surface});
         }
+        // Where weights are hardly more than rounding, so is what is drawn.
+        if (estimates_blur > 2e-4 * sum) d.uncertain = true;
         const double brightness = luminance(d.control);
         d.variance = std::max(sum * sum - (0.04 - 0.004) * brightness * brightness, 0.0);
         double samples = budget.samples;

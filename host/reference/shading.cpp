@@ -253,16 +253,15 @@ double rounding_slack(const Surface& surface, const Material& material, const Ca
         }
         return most;
     };
-    const auto kind = static_cast<LightKind>(light.position.w);
-    const bool has_area = kind == LIGHT_TRIANGLE || kind == LIGHT_QUAD;
     double slack = 0;
     for (int axis = 0; axis < 3; ++axis) {
         glm::dvec3 along(0);
         along[axis] = 1;
         slack += change(shift * along, {});
-        if (has_area) slack += change(glm::dvec3(0), {normal_rounding(light) * along, 0});
+        if (has_area(light)) slack += change(glm::dvec3(0), {normal_rounding(light) * along, 0});
     }
-    if (kind == LIGHT_SPOT) slack += change(glm::dvec3(0), {glm::dvec3(0), 4 * epsilon});
+    if (static_cast<LightKind>(light.position.w) == LIGHT_SPOT)
+        slack += change(glm::dvec3(0), {glm::dvec3(0), 4 * epsilon});
     return slack;
 }
 

@@ -46,6 +46,11 @@ struct Unshadowed {
 [[nodiscard]] Unshadowed unshadowed(const Surface& surface, const Material& material,
                                     const Camera& camera, const Light& light, const glm::dvec2& u);
 
+[[nodiscard]] inline bool has_area(const Light& light) {
+    const auto kind = static_cast<LightKind>(light.position.w);
+    return kind == LIGHT_TRIANGLE || kind == LIGHT_QUAD;
+}
+
 /// By how much rounding to single precision can change the value of unshadowed(): the changes under
 /// shifts of the position along each axis by 8 units in the last place of the coordinates and of
 /// the distance to the light, of an area's normal (a cross product) by 2 units of the product of
