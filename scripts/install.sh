@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Installs what building and running manylight needs on Debian 12; does nothing where all is there.
 #
-# usage: scripts/install.sh [--tests] [--portability] [--no-intel] [--plots]
+# usage: scripts/install.sh [--tests] [--portability] [--no-intel] [--plots] [--cases]
 #   --tests        also what the tests need: GoogleTest, Embree (for manylight bench), Python, Clang
 #                  (to lint kernels), Oclgrind (which sees accesses out of bounds), Chromium and
 #                  Selenium (to click through reports), and Intel's OpenCL runtime for CPUs, where
@@ -11,18 +11,21 @@
 #                  processors, Oclgrind, Python and Intel's runtime
 #   --no-intel     without Intel's runtime
 #   --plots        also Matplotlib, which draws the failure atlas and the picture of charts
+#   --cases        also what scripts/cases.sh needs: NumPy and OpenImageIO for Python
 set -euo pipefail
 
 tests=false
 intel=true
 portability=false
 plots=false
+cases=false
 for argument in "$@"; do
     case $argument in
         --tests) tests=true ;;
         --no-intel) intel=false ;;
         --portability) portability=true ;;
         --plots) plots=true ;;
+        --cases) cases=true ;;
         *) echo "install.sh: unknown option $argument" >&2; exit 2 ;;
     esac
 done
@@ -42,6 +45,9 @@ if $portability; then
 fi
 if $plots; then
     packages+=(python3 python3-matplotlib)
+fi
+if $cases; then
+    packages+=(python3 python3-numpy python3-openimageio)
 fi
 
 missing=()
