@@ -631,6 +631,53 @@ TEST(gltf, animated_nodes) {
     EXPECT_THROW((void)corner(2), InputError);
 }
 
+// What JSON pointers name: lights, materials, nodes, whether they show, and weights.
+TEST(gltf, animated_by_pointers) {
+    GltfTest file;
+    file.document["extensionsRequired"] = {"KHR_animation_pointer"};
+    file.document["extensions"]["KHR_lights_punctual"]["lights"] = {{{"type", "point"}}};
+    file.document["nodes"].push_back({{"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}});
+    file.document["scenes"][0]["nodes"] = {0, 1};
+    file.document["materials"] = {{{"emissiveFactor", {0, 0, 0}}}};
+    file.primitive()["material"] = 0;
+    const int times = file.add_floats({1, 3}, "SCALAR", 2);
+    const auto at = [&](const char* pointer, int output, const char* interpolation = "LINEAR") {
+        const json target = {{"path", "pointer"},
+                             {"extensions", {{"KHR_animation_pointer", {{"pointer", pointer}}}}}};
+        file.document["animations"] = {
+            {{"channels", {{{"sampler", 0}, {"target", target}}}},
+             {"samplers",
+              {{{"input", times}, {"output", output}, {"interpolation", interpolation}}}}}};
+        return file.load(2.0);
+    };
+    const int numbers = file.add_floats({4, 8}, "SCALAR", 2);
+    const Scene bright = at("/extensions/KHR_lights_punctual/lights/0/intensity", numbers);
+    EXPECT_EQ(bright.lights[0].emission.x, 6);
+    EXPECT_EQ(bright.warnings.size(), 0u);
+    const int vectors = file.add_floats({0, 0, 0, 1, 0.5f, 0}, "VEC3", 2);
+    EXPECT_EQ(glm::vec3(at("/materials/0/emissiveFactor", vectors).materials[0].emission),
+              glm::vec3(0.5f, 0.25f, 0));
+    EXPECT_EQ(glm::vec3(at("/nodes/1/translation", vectors).lights[0].position),
+              glm::vec3(0.5f, 0.25f, 0));
+    const int turns = file.add_floats({0, 0, 0, 1, 0, 0, 1, 0}, "VEC4", 2);
+    expect_near(triangle(at("/nodes/0/rotation", turns), 0)[1], {0, 1, 0});
+    file.document["nodes"][1]["extensions"]["KHR_node_visibility"] = {{"visible", true}};
+    const int shown = file.add(std::vector<std::uint8_t>{0, 1}, 5121, "SCALAR", 2);
+    EXPECT_TRUE(
+        at("/nodes/1/extensions/KHR_node_visibility/visible", shown, "STEP").lights.empty());
+    file.primitive()["targets"] = {
+        {{"POSITION", file.add_floats({0, 0, 1, 0, 0, 1, 0, 0, 1}, "VEC3", 3)}}};
+    file.document["meshes"][0]["weights"] = {0};
+    expect_near(triangle(at("/meshes/0/weights", numbers), 0)[0], {0, 0, 6});
+    for (const char* pointer : {"/nodes/7/translation", "/nodes/x/translation", "/materials/~3"})
+        EXPECT_THROW((void)at(pointer, vectors), InputError) << pointer;
+    EXPECT_THROW((void)at("/cameras/0/perspective/yfov", numbers), InputError);
+    // What it makes of a value is checked as the value is.
+    const int negative = file.add_floats({-4, -4}, "SCALAR", 2);
+    EXPECT_THROW((void)at("/extensions/KHR_lights_punctual/lights/0/intensity", negative),
+                 InputError);
+}
+
 TEST(gltf, what_is_not_rendered_is_warned_about) {
     GltfTest file;
     file.document["extensionsUsed"] = {"KHR_materials_clearcoat"};

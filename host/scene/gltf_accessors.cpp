@@ -40,7 +40,9 @@ const Form& form_of(Attribute attribute) {
         {"VEC4 of float (5126) or normalized byte or short", 4, 4, true, always, always, never,
          never},
         {"SCALAR of float (5126) or normalized byte or short", 1, 1, true, always, always, never,
-         never}};
+         never},
+        {"SCALAR or VEC of at most 2 bytes or float (5126)", 1, 4, true, always, always, always,
+         always}};
     return forms[static_cast<int>(attribute)];
 }
 

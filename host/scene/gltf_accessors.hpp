@@ -24,7 +24,8 @@ enum class Attribute {
     joints,
     weights,
     rotation,
-    scalar
+    scalar,
+    value  // of an animation, numbers or vectors
 };
 
 /// Reads accessors of a file that check_gltf() has passed. Every function throws InputError naming

@@ -6,15 +6,22 @@
 namespace manylight {
 
 Extension extension_kind(const std::string& name) {
-    static const std::set<std::string> rendered = {
-        "EXT_meshopt_compression", "EXT_mesh_gpu_instancing",
-        "EXT_texture_webp",        "KHR_draco_mesh_compression",
-        "KHR_lights_punctual",     "KHR_materials_emissive_strength",
-        "KHR_materials_ior",       "KHR_materials_pbrSpecularGlossiness",
-        "KHR_materials_specular",  "KHR_materials_unlit",
-        "KHR_materials_variants",  "KHR_mesh_quantization",
-        "KHR_meshopt_compression", "KHR_node_visibility",
-        "KHR_texture_transform"};
+    static const std::set<std::string> rendered = {"EXT_meshopt_compression",
+                                                   "EXT_mesh_gpu_instancing",
+                                                   "EXT_texture_webp",
+                                                   "KHR_animation_pointer",
+                                                   "KHR_draco_mesh_compression",
+                                                   "KHR_lights_punctual",
+                                                   "KHR_materials_emissive_strength",
+                                                   "KHR_materials_ior",
+                                                   "KHR_materials_pbrSpecularGlossiness",
+                                                   "KHR_materials_specular",
+                                                   "KHR_materials_unlit",
+                                                   "KHR_materials_variants",
+                                                   "KHR_mesh_quantization",
+                                                   "KHR_meshopt_compression",
+                                                   "KHR_node_visibility",
+                                                   "KHR_texture_transform"};
     static const std::set<std::string> silent = {"AGI_articulations",
                                                  "AGI_stk_metadata",
                                                  "EXT_feature_metadata",

@@ -818,6 +818,10 @@ class Loader {
 Scene load_scene(const std::string& path, const LoadOptions& options) {
     GltfFile file = read_gltf(path);
     check_gltf(file);
+    if (options.seconds) {
+        point_animation(file, *options.seconds);
+        check_gltf(file);
+    }
     mend_gltf(file, options.variant);
     return Loader(file, options).load();
 }

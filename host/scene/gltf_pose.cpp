@@ -64,7 +64,91 @@ glm::dquat rotation_of(const glm::dvec4& v) {
     return glm::normalize(glm::dquat(v.w, v.x, v.y, v.z));
 }
 
+enum class Shape { one, many, rotation };  // of what a keyframe holds
+
+// What a sampler of the first animation gives at a moment.
+std::vector<glm::dvec4> sample(const GltfFile& file, const tinygltf::Model& model,
+                               Accessors& accessors, int index, Attribute kind, Shape shape,
+                               double seconds) {
+    const tinygltf::AnimationSampler& sampler = model.animations.front().samplers[index];
+    const std::string where = fmt::format("animations[0].samplers[{}]", index);
+    const std::vector<glm::vec4> times =
+        accessors.vectors(sampler.input, Attribute::scalar, where + ".input");
+    for (std::size_t i = 1; i < times.size(); ++i)
+        if (!(times[i].x > times[i - 1].x))
+            throw InputError("{}: {}.input: keyframe {} at {} s is not after {} s", file.path,
+                             where, i, times[i].x, times[i - 1].x);
+    const std::vector<glm::vec4> values =
+        accessors.vectors(sampler.output, kind, where + ".output");
+    const std::size_t keys = times.size() * (sampler.interpolation == "CUBICSPLINE" ? 3 : 1);
+    const std::size_t width = shape == Shape::many ? values.size() / keys : 1;
+    if (values.size() != keys * width || width == 0)
+        throw InputError("{}: {}.output: {} values for {} keyframes", file.path, where,
+                         values.size(), times.size());
+    return interpolate(sampler, find_moment(times, seconds), values, width,
+                       shape == Shape::rotation);
+}
+
+constexpr const char* pointer_extension = "KHR_animation_pointer";
+
+// Whether what is there shows in an image, and is checked when it has changed.
+bool can_point_to(const std::string& pointer) {
+    constexpr const char* animated[] = {"/nodes/", "/meshes/", "/materials/", "/cameras/",
+                                        "/extensions/KHR_lights_punctual/"};
+    return std::ranges::any_of(animated, [&](const char* at) { return pointer.starts_with(at); });
+}
+
+// What a sampler gives at a moment, as the value that a pointer names.
+nlohmann::json pointed_value(const GltfFile& file, const tinygltf::Model& model,
+                             Accessors& accessors, const std::string& pointer, int sampler,
+                             double seconds) {
+    const std::string name = nlohmann::json::json_pointer(pointer).back();
+    const bool rotates = pointer.starts_with("/nodes/") && name == "rotation";
+    const Shape shape = name == "weights" ? Shape::many : rotates ? Shape::rotation : Shape::one;
+    const std::vector<glm::dvec4> now =
+        sample(file, model, accessors, sampler, Attribute::value, shape, seconds);
+    const int output = model.animations.front().samplers[sampler].output;
+    const int components = tinygltf::GetNumComponentsInType(model.accessors[output].type);
+    if (name == "visible") return now[0].x != 0;
+    if (components == 1 && shape == Shape::one) return now[0].x;
+    nlohmann::json value = nlohmann::json::array();
+    for (glm::dvec4 v : now) {
+        if (rotates) v = glm::normalize(v);
+        for (int c = 0; c < components; ++c) value.push_back(v[c]);
+    }
+    return value;
+}
+
 }  // namespace
+
+void point_animation(GltfFile& file, double seconds) {
+    using nlohmann::json;
+    if (!file.json.contains("animations") || file.json["animations"].empty()) return;
+    std::vector<std::pair<std::string, int>> targets;  // pointers and samplers
+    for (const json& channel : file.json["animations"][0]["channels"]) {
+        const json& target = channel["target"];
+        if (target.value("path", "") != "pointer" || !target.contains("extensions") ||
+            !target["extensions"].contains(pointer_extension))
+            continue;
+        const std::string pointer = target["extensions"][pointer_extension].value("pointer", "");
+        if (can_point_to(pointer)) targets.emplace_back(pointer, channel["sampler"].get<int>());
+    }
+    if (targets.empty()) return;
+    const tinygltf::Model model = parse_gltf(file);
+    Accessors accessors(file, model);
+    for (const auto& [pointer, sampler] : targets) {
+        try {
+            if (!file.json.contains(json::json_pointer(pointer).parent_pointer()))
+                throw InputError("{}: animations[0]: nothing has what '{}' names", file.path,
+                                 pointer);
+            file.json[json::json_pointer(pointer)] =
+                pointed_value(file, model, accessors, pointer, sampler, seconds);
+        } catch (const json::exception&) {
+            throw InputError("{}: animations[0]: '{}' is no pointer into the file", file.path,
+                             pointer);
+        }
+    }
+}
 
 glm::dmat4 Pose::Transform::whole() const {
     return glm::scale(glm::translate(matrix, translation) * glm::mat4_cast(rotation), scale);
@@ -91,37 +175,24 @@ Pose::Pose(const GltfFile& file, const tinygltf::Model& model, Accessors& access
     if (seconds) {
         if (model.animations.empty())
             throw InputError("{}: --at {}: the file has no animations", file.path, *seconds);
-        animate(model.animations.front(), accessors, *seconds, transforms);
+        animate(accessors, *seconds, transforms);
     }
     place_nodes(transforms);
 }
 
-void Pose::animate(const tinygltf::Animation& animation, Accessors& accessors, double seconds,
-                   std::vector<Transform>& transforms) {
-    for (const tinygltf::AnimationChannel& channel : animation.channels) {
+void Pose::animate(Accessors& accessors, double seconds, std::vector<Transform>& transforms) {
+    for (const tinygltf::AnimationChannel& channel : model_.animations.front().channels) {
         const int node = channel.target_node;
         const std::string& path = channel.target_path;
         if (node < 0 || path == "pointer") continue;
-        const tinygltf::AnimationSampler& sampler = animation.samplers[channel.sampler];
-        const std::string where = fmt::format("animations[0].samplers[{}]", channel.sampler);
-        const std::vector<glm::vec4> times =
-            accessors.vectors(sampler.input, Attribute::scalar, where + ".input");
-        for (std::size_t i = 1; i < times.size(); ++i)
-            if (!(times[i].x > times[i - 1].x))
-                throw InputError("{}: {}.input: keyframe {} at {} s is not after {} s", file_.path,
-                                 where, i, times[i].x, times[i - 1].x);
         const Attribute kind = path == "weights"    ? Attribute::scalar
                                : path == "rotation" ? Attribute::rotation
                                                     : Attribute::position;
-        const std::vector<glm::vec4> values =
-            accessors.vectors(sampler.output, kind, where + ".output");
-        const std::size_t keys = times.size() * (sampler.interpolation == "CUBICSPLINE" ? 3 : 1);
-        const std::size_t width = path == "weights" ? values.size() / keys : 1;
-        if (values.size() != keys * width || width == 0)
-            throw InputError("{}: {}.output: {} values for {} keyframes", file_.path, where,
-                             values.size(), times.size());
+        const Shape shape = path == "weights"    ? Shape::many
+                            : path == "rotation" ? Shape::rotation
+                                                 : Shape::one;
         const std::vector<glm::dvec4> now =
-            interpolate(sampler, find_moment(times, seconds), values, width, path == "rotation");
+            sample(file_, model_, accessors, channel.sampler, kind, shape, seconds);
         Transform& t = transforms[node];
         if (path == "translation") t.translation = now[0];
         if (path == "rotation") t.rotation = rotation_of(now[0]);

@@ -36,8 +36,7 @@ class Pose {
         [[nodiscard]] glm::dmat4 whole() const;
     };
 
-    void animate(const tinygltf::Animation& animation, Accessors& accessors, double seconds,
-                 std::vector<Transform>& transforms);
+    void animate(Accessors& accessors, double seconds, std::vector<Transform>& transforms);
     void place_nodes(const std::vector<Transform>& transforms);
 
     const GltfFile& file_;
@@ -46,6 +45,11 @@ class Pose {
     std::vector<glm::dmat4> to_world_;
     std::vector<std::vector<float>> weights_;
 };
+
+/// Writes into the JSON, which has passed check_gltf() and has to pass it again, what the first
+/// animation makes of lights, materials, cameras, nodes and meshes that it names by JSON pointers
+/// (KHR_animation_pointer). Throws InputError.
+void point_animation(GltfFile& file, double seconds);
 
 /// The instances of a node's mesh (EXT_mesh_gpu_instancing), as transforms to the node's frame; the
 /// identity alone where it has none.
