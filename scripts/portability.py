@@ -87,10 +87,10 @@ def list_devices(place, program):
     listed = run(place, [program, "devices"]).stdout
     devices = []
     for block in re.finditer(r"^(\d+): (.*)\n((?:[ \t].*\n?)*)", listed, re.MULTILINE):
-        version = re.search(r"\bdriver(?: version)?:? ([^,\n]+)", block[3])
-        devices.append(Device(int(block[1]), block[2].removesuffix("  (default)"),
-                              block[3].split(",")[0].strip(), version[1] if version else "?",
-                              "cannot render" not in block[3]))
+        # Type, platform, OpenCL's version, that of OpenCL C, driver.
+        facts = [fact.strip() for fact in block[3].split("\n")[0].split(",")]
+        devices.append(Device(int(block[1]), block[2].removesuffix("  (default)"), facts[1],
+                              facts[-1].removeprefix("driver "), "cannot render" not in block[3]))
     return devices
 
 

@@ -29,7 +29,7 @@ class CommandTest(unittest.TestCase):
 
     def run_program(self, *arguments, code=0):
         run = subprocess.run([PROGRAM, *map(str, arguments)], capture_output=True, text=True,
-                             cwd=self.folder, timeout=120)
+                             cwd=self.folder, timeout=600)
         self.assertEqual(run.returncode, code, run.stdout + run.stderr)
         return run
 
@@ -262,7 +262,7 @@ class CommandTest(unittest.TestCase):
                           ["render", "--help"], ["scene", "--list"], ["--version"]):
             with self.subTest(arguments=arguments), open("/dev/full", "w") as full:
                 run = subprocess.run([PROGRAM, *arguments], stdout=full, stderr=subprocess.PIPE,
-                                     text=True, cwd=self.folder, timeout=120)
+                                     text=True, cwd=self.folder, timeout=600)
                 self.assertEqual(run.returncode, 1)
                 self.assertEqual(len(run.stderr.splitlines()), 1, run.stderr)
                 self.assertTrue(run.stderr.startswith("error: standard output cannot be written"))

@@ -106,18 +106,6 @@ TEST(verify, scenes_hold_everything) {
     for (const std::string& what : all) EXPECT_TRUE(has.contains(what)) << what;
 }
 
-TEST(verify, leaves_nothing_out) {
-    FOR_EACH_DEVICE(device) {
-        const Verification found = verify_all(device, small_options(), [](double) {});
-        for (const SceneChecks& scene : found.scenes)
-            for (const Check& check : scene.checks)
-                EXPECT_TRUE(check.passed())
-                    << scene.name << ", " << check.stage << ": " << check.failed << " differ, "
-                    << check.borderline << " are borderline; " << check.first_failure;
-        EXPECT_EQ(found.verdict(), "The device computes correctly.");
-    }
-}
-
 // Whatever is left out, or was not told anything about, is named.
 TEST(verify, names_what_is_left_out) {
     FOR_EACH_DEVICE(device) {
