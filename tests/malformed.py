@@ -539,7 +539,7 @@ def refused(program, path, words):
     image = path.parent / (path.name + ".png")
     command = [program, "render", str(path), "--quiet", "-o", str(image)]
     try:
-        run = subprocess.run(command, capture_output=True, text=True, timeout=20, errors="replace")
+        run = subprocess.run(command, capture_output=True, text=True, timeout=120, errors="replace")
     except subprocess.TimeoutExpired:
         return "it hangs"
     if run.returncode not in (1, 2, 3):
