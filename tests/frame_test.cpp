@@ -65,7 +65,9 @@ TEST(frame, too_many_lights_for_cuts_are_refused) {
 // A render that is interrupted at any moment has whole pixel samples, of some pixels maybe none.
 TEST(frame, interrupts_leave_whole_samples) {
     const test::TestScene& scene = test::scene_named("many");
-    for (const char* sampler : {"adaptive", "exhaustive"}) {
+    // Between two passes of adaptive, and in the second batch of contribution.
+    for (const char* sampler : {"adaptive", "contribution"}) {
+        SCOPED_TRACE(sampler);
         RenderOptions options = small_options(sampler);
         options.clusters.tile_size = 8;
         options.pixel_centre = true;
