@@ -5,6 +5,7 @@
 #include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "clock.hpp"
 #include "commands/commands.hpp"
@@ -266,7 +267,8 @@ void warn_of_interrupt(const RenderOptions& options, const FrameResult& result) 
 
 int run_render(const RenderArguments& arguments) {
     const auto start = Clock::now();
-    Phases phases = {{"start", std::chrono::duration<double>(start - process_start()).count()}};
+    Phases phases = {
+        {"start", std::max(std::chrono::duration<double>(start - process_start()).count(), 0.0)}};
     auto phase_ends = [&phases, begun = start](const char* name) mutable {
         phases.emplace_back(name, seconds_since(begun));
         begun = Clock::now();
@@ -310,7 +312,11 @@ int run_render(const RenderArguments& arguments) {
     const WideBvh bvh = build_bvh(loaded, device, arguments.quiet);
     phase_ends("build");
     if (arguments.seconds > 0) options.deadline = deadline_of(arguments, images, loaded);
-    options.interrupted = [] { return pending_signal() != 0; };
+    options.interrupted = [said = false]() mutable {
+        if (pending_signal() != 0 && !std::exchange(said, true))
+            warn("interrupted: the image so far will be written; once more ends at once");
+        return pending_signal() != 0;
+    };
     Frame frame(device, loaded.scene, bvh, loaded.camera, options);
     if (!arguments.quiet) print_plan(loaded, frame.plan(), device.info());
     frame.prepare();

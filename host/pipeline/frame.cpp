@@ -155,6 +155,8 @@ FrameResult Frame::render(Progress& progress, const Saving& saving, const FrameS
         render_to_error(progress);
     else
         visit_all(options_.spp, 0, 1, progress);
+    if (std::ranges::any_of(done_, [&](uint samples) { return samples != done_[0]; }))
+        result_.is_cut_short = true;
     if (options_.estimates_error()) {
         if (!result_.error) result_.error = estimate_error();
         if (result_.empty_pixels > 0) result_.error.reset();
@@ -179,7 +181,7 @@ void Frame::render_to_error(Progress& progress) {
         result_.error = estimate_error();
         const double error = result_.error->relmse;
         const bool late = options_.deadline && Clock::now() >= *options_.deadline;
-        if (is_interrupted()) return;
+        if (result_.is_cut_short && is_interrupted()) return;
         if (error <= options_.target_error || end >= options_.spp || late) {
             if (saving_.save && end < options_.spp) save(plan_.batches - 1, end);
             return;
@@ -203,7 +205,11 @@ void Frame::render_to_error(Progress& progress) {
 // Brings all batches to `end` samples per pixel, or as far as time allows.
 void Frame::visit_all(uint end, double shown, double share, Progress& progress) {
     const Tiles all = all_tiles(options_.width, options_.height, options_.tile_size());
-    for (unsigned i = 0; i < plan_.batches && !is_interrupted(); ++i) {
+    for (unsigned i = 0; i < plan_.batches; ++i) {
+        if (is_interrupted()) {
+            result_.is_cut_short = true;
+            return;
+        }
         Visit visit;
         visit.batch = all;
         visit.number = i;
@@ -299,7 +305,10 @@ void Frame::sample(const Visit& visit, Progress& progress) {
     double seconds_per_sample = 0;  // of a light sample of all pixels
     const uint first = done_[visit.number];
     for (uint i = first; i < visit.end; ++i) {
-        if (is_interrupted()) break;
+        if (is_interrupted()) {
+            result_.is_cut_short = true;
+            break;
+        }
         const uint count = samples_of(i);
         const auto begun = Clock::now();
         const auto seconds_left = [&] {
@@ -325,7 +334,7 @@ void Frame::sample(const Visit& visit, Progress& progress) {
             device_.finish();
             work += static_cast<double>(samples);
             report(progress, visit, work);
-            return saving_.save || !is_interrupted();  // a state is one between pixel samples
+            return !is_interrupted() || saving_.save;  // a state is one between pixel samples
         };
         done_[visit.number] = i + 1;
         bool complete = true;
@@ -371,10 +380,7 @@ std::string Frame::name() const {
     return std::string(o.sampler) + " " + hash.add(MANYLIGHT_VERSION).name();
 }
 
-bool Frame::is_interrupted() {
-    if (!options_.interrupted || !options_.interrupted()) return false;
-    return result_.is_cut_short = true;
-}
+bool Frame::is_interrupted() const { return options_.interrupted && options_.interrupted(); }
 
 // Between two pixel samples of a batch that is on the way to `end` of them.
 void Frame::save(unsigned batch, uint end) {

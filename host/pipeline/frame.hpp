@@ -28,7 +28,8 @@ struct FrameResult {
     uint later_light_samples = 0;        // of the last one
     double spp = 0;                      // pixel samples, on average where they were cut short
     std::size_t empty_pixels = 0;        // without one
-    bool is_cut_short = false;           // by time or an interrupt, maybe within a pixel sample
+    bool is_cut_short = false;           // some pixels have fewer samples than others, or all
+                                         // have fewer than was asked for: by time, an interrupt
     std::optional<ErrorEstimate> error;  // where it was asked for
     double prepare_seconds = 0;          // clusters, contributions, PDFs; compiling apart
     double render_seconds = 0;           // the rest, likewise
@@ -85,7 +86,7 @@ class Frame {
     void cluster(const Visit& visit, Progress& progress);
     void keep_aovs(const Tiles& batch);
     void sample(const Visit& visit, Progress& progress);
-    [[nodiscard]] bool is_interrupted();
+    [[nodiscard]] bool is_interrupted() const;
     void save(unsigned batch, uint end);
     void resume(const FrameState& state);
     [[nodiscard]] ErrorEstimate estimate_error();
