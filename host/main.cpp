@@ -30,6 +30,7 @@ int run(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
+    std::setvbuf(stdout, nullptr, _IOLBF, BUFSIZ);  // a log shows each line as it comes
     const int status = run(argc, argv);
     if (!manylight::standard_output_fails() || status != 0) return status;
     return fail("standard output cannot be written", 1, false);

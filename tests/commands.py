@@ -8,6 +8,7 @@ import json
 import os
 import pathlib
 import re
+import select
 import signal
 import struct
 import subprocess
@@ -65,6 +66,39 @@ class CommandTest(unittest.TestCase):
                          base64.b64encode(corners).decode()}]}
         (self.folder / "lamp.gltf").write_text(json.dumps(scene))
 
+    def write_moving_lamp(self):
+        """The same with a camera 'eye', a variant 'night' and a lamp that moves, an emitter, and a
+        mesh in two places."""
+        self.write_lamp()
+        scene = json.loads((self.folder / "lamp.gltf").read_text())
+        scene["materials"] += [{"name": "blue", "pbrMetallicRoughness":
+                                {"baseColorFactor": [0.1, 0.2, 0.9, 1]}},
+                               {"emissiveFactor": [1, 1, 1]}]
+        scene["extensionsUsed"].append("KHR_materials_variants")
+        scene["extensions"]["KHR_materials_variants"] = {"variants": [{"name": "night"}]}
+        scene["meshes"][0]["primitives"][0]["extensions"] = {"KHR_materials_variants": {
+            "mappings": [{"material": 1, "variants": [0]}]}}
+        scene["meshes"].append({"primitives": [{"attributes": {"POSITION": 0}, "material": 2}]})
+        scene["cameras"] = [{"type": "perspective", "perspective": {"yfov": 0.7, "znear": 0.1,
+                                                                    "aspectRatio": 1}}]
+        scene["nodes"] += [{"name": "eye", "camera": 0, "translation": [0, 0.7, 3]},
+                           {"mesh": 0, "translation": [0, 0.3, -1]},
+                           {"mesh": 1, "translation": [0, 2, 0], "rotation": [1, 0, 0, 0],
+                            "scale": [0.2, 0.2, 0.2]}]
+        scene["scenes"][0]["nodes"] += [2, 3, 4]
+        values = struct.pack("<8f", 0, 1, 0, 1, 0, 0.2, 1, 1)  # two moments, two places
+        scene["buffers"].append({"byteLength": 32, "uri": "data:application/octet-stream;base64," +
+                                 base64.b64encode(values).decode()})
+        scene["bufferViews"] += [{"buffer": 1, "byteLength": 8},
+                                 {"buffer": 1, "byteOffset": 8, "byteLength": 24}]
+        scene["accessors"] += [{"bufferView": 1, "componentType": 5126, "count": 2, "type": "SCALAR",
+                                "min": [0], "max": [1]},
+                               {"bufferView": 2, "componentType": 5126, "count": 2, "type": "VEC3"}]
+        scene["animations"] = [{"samplers": [{"input": 1, "output": 2}], "channels": [
+            {"sampler": 0, "target": {"node": 1, "path": "translation"}}]}]
+        (self.folder / "moving.gltf").write_text(json.dumps(scene))
+        return "moving.gltf"
+
     # What render makes.
 
     def test_render_by_default_makes_a_png_here(self):
@@ -73,7 +107,7 @@ class CommandTest(unittest.TestCase):
         self.assertIn("64 lights", run.stdout)
         self.assertIn("sampler adaptive", run.stdout)
         self.assertIn("pixels in work", run.stdout)  # what memory will be needed
-        self.assertEqual(run.stderr, "")     # no progress bar where there is no terminal
+        self.assertEqual(run.stderr, "")     # nor a bar where there is no terminal
 
     def test_options_may_come_before_the_file(self):
         self.run_program("render", "-q", "--height", 8, "--aov", "depth", "-o", "a.exr", self.cornell)
@@ -86,7 +120,7 @@ class CommandTest(unittest.TestCase):
         self.assertEqual(self.files(), ["a.exr", "b.png", "c.png", "s.json"])
         stats = json.loads((self.folder / "s.json").read_text())
         for key, value in dict(sampler="contribution", light_samples=3, spp=2, seed=7, width=40,
-                               height=24, lights=64).items():
+                               height=24, lights=64, lamp_scale=1, cut_short=False).items():
             self.assertEqual(stats[key], value, key)
         self.assertGreater(stats["clusters"], 3)
         # Two pixel samples, and the rays through the centres that clusters are made from.
@@ -96,9 +130,26 @@ class CommandTest(unittest.TestCase):
         self.assertGreater(stats["memory_bytes"]["matrix"], 0)
         self.assertTrue(stats["device"])
         self.assertEqual(sorted(stats["seconds"]),
-                         ["build", "compile", "load", "prepare", "render", "total"])
-        self.assertLess(sum(v for k, v in stats["seconds"].items() if k != "total"),
-                        stats["seconds"]["total"] * 1.02)
+                         ["build", "compile", "device", "load", "prepare", "render", "start",
+                          "total", "upload", "write"])
+
+    def test_seconds_are_all_accounted_for(self):
+        begun = time.monotonic()
+        run = self.run_program("render", self.cornell, "--height", 200, "--spp", 8, "-o", "a.exr",
+                               "--stats", "s.json")
+        elapsed = time.monotonic() - begun
+        seconds = json.loads((self.folder / "s.json").read_text())["seconds"]
+        total = seconds.pop("total")
+        self.assertAlmostEqual(sum(seconds.values()), total, places=6)
+        self.assertLess(total, elapsed + 0.02)  # the start is known to 10 ms
+        self.assertGreater(total, 0.7 * elapsed - 0.3)
+        summary = next(line for line in run.stdout.splitlines() if "8 spp" in line)
+        parts = re.findall(r"([a-z]+) (\d+\.\d\d)[,)]", summary)
+        self.assertEqual([name for name, _ in parts],
+                         ["start", "load", "device", "build", "upload", "compile", "prepare",
+                          "render", "write"])
+        for name, value in parts:
+            self.assertAlmostEqual(float(value), seconds[name], delta=0.006)
 
     def test_stops_where_the_error_is_small_enough(self):
         run = self.run_program("render", self.cornell, "--height", 32, "--target-error", 0.01,
@@ -138,9 +189,99 @@ class CommandTest(unittest.TestCase):
                       "R, G, B, depth.Z, lights.Y, normal.X, normal.Y, normal.Z",
                       'manylight:sampler: "contribution-defensive"',
                       'manylight:seed: "4294967295"', "manylight:version:", "manylight:device:",
-                      "manylight:seconds:", 'manylight:light_samples: "4"'):
+                      "manylight:seconds:", 'manylight:first_light_samples: "4"',
+                      'manylight:lamp_scale: "1.0"', 'manylight:shift: "0,0"'):
             self.assertIn(words, header)
         self.assertNotIn("albedo", header)
+
+    def facts(self, image):
+        """The program's facts in an image's header, by name."""
+        text = subprocess.run(["oiiotool", "--info", "-v", image], cwd=self.folder,
+                              capture_output=True, text=True, check=True).stdout
+        return {name: value.strip('"') for name, value in
+                re.findall(r"^ *manylight:(\w+): (.*)$", text, re.M)}
+
+    def rmse(self, a, b):
+        return json.loads(self.run_program("compare", a, b, "--json").stdout)["rmse"]
+
+    # What an image does not depend on, or not by itself.
+    NOT_OF_THE_IMAGE = {"help", "output", "time", "threads", "cluster-map", "top-lights", "stats",
+                        "checkpoint", "checkpoint-every", "resume", "quiet", "like"}
+
+    def test_headers_tell_all_options(self):
+        scene = self.write_moving_lamp()
+        given = ["--camera", "eye", "--emitter-points", 3, "--at", 0.7, "--lamp-scale", 0.1,
+                 "--variant", "night", "--instances", "copied", "--device", 0, "--device-form",
+                 "gpu", "--height", 12, "--shift", "2,-0.5", "--light-samples", 3, "--spp", 2,
+                 "--target-error", 1e-6, "--exposure", 1.5, "--memory", "512M",
+                 "--seed", 4294967295, "--normal-threshold", 9.3, "--cull-back-faces",
+                 "--pixel-centre", "--hide-emitters", "--no-reflections", "--sampler", "uniform"]
+        self.run_program("render", scene, "-o", "a.exr", "-o", "a.png", "-q", *given)
+        # The one layer that changes where samples lie.
+        self.run_program("render", scene, "-o", "b.exr", "--aov", "error,depth", "-q",
+                         "--height", 8)
+        told = self.facts("a.png")
+        self.assertEqual({k: v for k, v in self.facts("a.exr").items() if k != "seconds"},
+                         {k: v for k, v in told.items() if k not in ("exposure", "seconds")})
+        self.assertEqual(self.facts("b.exr")["aov"], "error")
+        text = self.run_program("render", "--help").stdout
+        options = set(re.findall(r"^  (?:-\w,)?--([a-z-]+)", text, re.M))
+        self.assertGreater(len(options), 30)
+        self.assertEqual({o for o in options - self.NOT_OF_THE_IMAGE
+                          if o.replace("-", "_") not in told}, {"aov"})
+        for name, value in dict(camera="eye", emitter_points="3", at="0.7", lamp_scale="0.1",
+                                variant="night", instances="copied", device_form="gpu",
+                                width="12", height="12", shift="2,-0.5", light_samples="3",
+                                spp="2", exposure="1.5", seed="4294967295",
+                                normal_threshold="9.3", cull_back_faces="true",
+                                pixel_centre="true", hide_emitters="true", no_reflections="true",
+                                memory="536870912", file="moving.gltf").items():
+            self.assertEqual(told[name], value, name)
+
+    def test_like_repeats_a_render(self):
+        scene = self.write_moving_lamp()
+        given = ["--at", 0.7, "--lamp-scale", 0.1, "--variant", "night", "--shift", "2,-0.3",
+                 "--light-samples", 3, "--spp", 3, "--seed", 5, "--height", 16, "--sampler",
+                 "uniform"]
+        self.run_program("render", scene, "-o", "a.exr", "-o", "a.png", "-q", *given)
+        for like in ("a.exr", "a.png"):
+            self.run_program("render", "--like", like, "-o", "b.exr", "-o", "b.png", "-q")
+            self.assertEqual(self.rmse("b.exr", "a.exr"), 0)
+            self.assertEqual(self.rmse("b.png", "a.png"), 0)
+            self.assertEqual({k: v for k, v in self.facts("b.exr").items() if k != "seconds"},
+                             {k: v for k, v in self.facts("a.exr").items() if k != "seconds"})
+        # The command line counts, flags as well, and a picture's exposure is one that may be asked.
+        self.run_program("render", "--like", "a.png", "--lamp-scale", 0.2, "--hide-emitters",
+                         "--spp", 2, "-o", "b.exr", "-o", "b.png", "-q")
+        told, before = self.facts("b.png"), self.facts("a.png")
+        self.assertEqual((told["lamp_scale"], told["hide_emitters"], told["spp"], told["seed"],
+                          told["exposure"]), ("0.2", "true", "2", "5", before["exposure"]))
+        self.assertGreater(self.rmse("b.exr", "a.exr"), 0)
+        # A stop by the error, its layer, for which a picture has no place, and clusters.
+        for more in (["--target-error", "0.02"], ["--aov", "error"],
+                     ["--sampler", "contribution", "--max-depth", "1"]):
+            self.run_program("render", self.cornell, "--height", 16, "-q", "-o", "c.exr", *more)
+            self.run_program("render", "--like", "c.exr", "-o", "d.exr", "-q")
+            self.assertEqual(self.rmse("d.exr", "c.exr"), 0, more)
+        self.run_program("render", "--like", "c.exr", "--aov", "error", "-o", "d.exr", "-q")
+        self.run_program("render", "--like", "d.exr", "-o", "d.png", "-q")
+
+    def test_like_says_what_it_cannot_repeat(self):
+        self.write_lamp()
+        self.run_program("render", "lamp.gltf", "--height", 8, "-o", "a.exr", "-q")
+        self.oiio("a.exr", "--eraseattrib", "manylight:.*", "-o", "plain.exr")
+        self.refuse("render", "--like", "plain.exr", words=["--like plain.exr", "header"])
+        self.refuse("render", "--like", "none.exr", words=["none.exr"])
+        self.oiio("a.exr", "--attrib", "manylight:cut_short", "true", "--attrib", "manylight:spp",
+                  "1.25", "--attrib", "manylight:version", "0.0.1", "-o", "old.exr")
+        run = self.run_program("render", "--like", "old.exr", "-o", "b.exr")
+        self.assertIn("warning: --like old.exr: was cut short at 1.25 spp; 2 are", run.stderr)
+        self.assertIn("was rendered by manylight 0.0.1", run.stderr)
+        self.assertIn(" 2 spp", run.stdout)
+        self.oiio("a.exr", "--attrib", "manylight:sampler", "magic", "-o", "bad.exr")
+        self.refuse("render", "--like", "bad.exr", words=["magic"])
+        self.oiio("a.exr", "--attrib", "manylight:width", "none", "-o", "bad.exr")
+        self.refuse("render", "--like", "bad.exr", words=["--like bad.exr", "--width", "none"])
 
     def test_emitter_points(self):
         for points, lights in ((0, 4), (9, 9)):
@@ -177,6 +318,82 @@ class CommandTest(unittest.TestCase):
         self.assertIn("warning: dark.gltf: extension KHR_lights_ies", run.stderr)
         self.assertIn("no lights", run.stderr)
         self.assertIn("dark.png", self.files())
+
+    def black(self, *arguments, change=lambda scene: None):
+        """What is said of a black image of the lamp's scene, seen from a camera at (0, 1, 3)."""
+        self.write_lamp()
+        scene = json.loads((self.folder / "lamp.gltf").read_text())
+        scene["cameras"] = [{"type": "perspective", "perspective": {"yfov": 0.9, "znear": 0.1}}]
+        scene["nodes"].append({"camera": 0, "translation": [0, 1, 3]})
+        scene["scenes"][0]["nodes"].append(2)
+        change(scene)
+        (self.folder / "lamp.gltf").write_text(json.dumps(scene))
+        run = self.run_program("render", "lamp.gltf", "--height", 16, "-q", *arguments)
+        lines = [line for line in run.stderr.splitlines() if "black" in line]
+        self.assertEqual(len(lines), 1 if lines else 0, run.stderr)
+        return lines[0] if lines else ""
+
+    def test_black_images_say_why(self):
+        self.assertEqual(self.black(), "")
+
+        def look_away(scene):
+            scene["nodes"][2]["rotation"] = [0, 1, 0, 0]
+
+        def go_below(scene):
+            scene["nodes"][2]["translation"] = [0, -1, 3]
+
+        def cover(scene):
+            scene["nodes"].append({"mesh": 1, "translation": [0, 0.5, 0], "scale": [9, 1, 9]})
+            scene["meshes"].append(json.loads(json.dumps(scene["meshes"][0])))
+            scene["meshes"][1]["primitives"][0]["material"] = 1
+            scene["materials"].append({"name": "glass"})
+            scene["scenes"][0]["nodes"].append(3)
+            scene["nodes"][2].update(translation=[0, 0.4, 0], rotation=[-0.7071, 0, 0, 0.7071])
+
+        def paint(scene):
+            scene["materials"][0]["pbrMetallicRoughness"] = {"baseColorFactor": [0, 0, 0, 1],
+                                                             "metallicFactor": 0}
+            scene["materials"][0]["extensions"] = {"KHR_materials_specular": {"specularFactor": 0}}
+            scene["extensionsUsed"].append("KHR_materials_specular")
+
+        def switch_off(scene):
+            scene["scenes"][0]["nodes"] = [0, 2]
+
+        def shine(scene):
+            switch_off(scene)
+            scene["materials"][0]["emissiveFactor"] = [1, 1, 1]
+
+        def shorten(scene):
+            scene["extensions"]["KHR_lights_punctual"]["lights"][0]["range"] = 0.1
+
+        def empty(scene):
+            scene["scenes"][0]["nodes"] = [1, 2]
+
+        for change, arguments, words in (
+                (look_away, [], "no geometry is in view"),
+                (go_below, [], "from below a floor"),
+                (cover, [], "block all light on its way to what is in view, most of it those of "
+                            "material 'glass'"),
+                (paint, [], "reflects none"),
+                (switch_off, [], "no lights"),
+                (shine, ["--hide-emitters"], "--hide-emitters"),
+                (shorten, [], "out of range"),
+                (empty, [], "no triangles")):
+            with self.subTest(change=change.__name__):
+                said = self.black(*arguments, change=change)
+                self.assertIn("warning: the image is black: ", said)
+                self.assertIn(words, said)
+
+    def test_light_that_should_go_through(self):
+        self.write_lamp()
+        scene = json.loads((self.folder / "lamp.gltf").read_text())
+        scene["extensionsUsed"] += ["KHR_materials_transmission", "KHR_materials_clearcoat"]
+        (self.folder / "lamp.gltf").write_text(json.dumps(scene))
+        lines = self.run_program("render", "lamp.gltf", "--height", 8, "-q").stderr.splitlines()
+        self.assertEqual(lines, [
+            "warning: lamp.gltf: extension KHR_materials_clearcoat is not rendered",
+            "warning: lamp.gltf: extension KHR_materials_transmission is not rendered: its surfaces "
+            "are opaque, and block the light of lamps behind them"])
 
     # What names hold that files or users make up.
 
@@ -371,8 +588,48 @@ class CommandTest(unittest.TestCase):
 
     def test_missing_arguments(self):
         self.refuse(words=["no command", "--help"])
-        self.refuse("render", words=["file"])
-        self.refuse("scene", "cornell", words=["--output"])
+        for arguments, what in ((["render"], "render: the scene's file"),
+                                (["scene", "cornell"], "scene: --output FILE.glb"),
+                                (["inspect", "a.glb"], "inspect: --pixel X,Y"),
+                                (["chart"], "chart: the scene's file"),
+                                (["compare", "a.exr"], "compare: the image that it should be"),
+                                (["compare", "--ref", "a.exr"], "compare: the image to judge"),
+                                (["bench"], "bench: what to measure (traversal, stages or a file)")):
+            with self.subTest(arguments=arguments):
+                self.refuse(*arguments, words=[f"error: {what} is missing; 'manylight "
+                                               f"{arguments[0]} --help' shows examples"])
+
+    def test_mistyped_words(self):
+        for arguments, words in (
+                (["rendr", self.cornell], "rendr: is no command; did you mean render?"),
+                (["chrat", "--seeds", 3], "chrat: is no command; did you mean chart?"),
+                (["picture"], "picture: is no command\n"),
+                (["room.glb", "-o", "a.png"],
+                 "room.glb: is no command; 'manylight render room.glb' renders it"),
+                (["help", "verfy"], "help: verfy: is no command; did you mean verify?"),
+                (["render", self.cornell, "--ssp", 4],
+                 "render: --ssp: there is no such option; did you mean --spp?"),
+                (["render", self.cornell, "--pixel-center"],
+                 "render: --pixel-center: there is no such option; did you mean --pixel-centre?"),
+                (["render", self.cornell, "--check"], "did you mean --checkpoint?"),
+                (["render", self.cornell, "--light_samples=4"], "did you mean --light-samples?"),
+                (["render", self.cornell, "--colour"], "--colour: there is no such option\n"),
+                (["render", self.cornell, "other.glb"],
+                 "render: other.glb: is one argument too many"),
+                (["render", self.cornell, "--instances", "foo"],
+                 "--instances: foo is not auto, copied or shared"),
+                (["verify", "--device-form", "5"],
+                 "--device-form: 5 is not 16, 4, 8, auto or gpu"),
+                (["bench", "traversal", "--bvh-width", "5"], "--bvh-width: 5 is not 16, 4 or 8"),
+                (["chart", self.cornell, "--samplers", "foo"],
+                 "--samplers foo: no such sampler (there are: exhaustive"),
+                (["verify", "--instances", "shared"], "--instances go with a file")):
+            with self.subTest(arguments=arguments):
+                self.refuse(*arguments, words=[words])
+
+    def test_help_of_a_command(self):
+        for arguments, same in ((["help", "render"], ["render", "--help"]), (["help"], ["--help"])):
+            self.assertEqual(self.run_program(*arguments).stdout, self.run_program(*same).stdout)
 
     # inspect.
 
@@ -601,6 +858,33 @@ class CommandTest(unittest.TestCase):
         self.assertLess(both[0]["relmse"], both[1]["relmse"])
         self.assertEqual((self.folder / "e.png").read_bytes()[:4], b"\x89PNG")
 
+    def test_compare_many(self):
+        for name, spp in (("a.exr", 4), ("b.exr", 1), ("c.exr", 2), ("r.exr", 16)):
+            self.run_program("render", self.cornell, "--height", 8, "--spp", spp, "-o", name, "-q")
+        run = self.run_program("compare", "a.exr", "b.exr", "c.exr", "r.exr", "-o", "e.png")
+        self.assertEqual([line.split(":")[0] for line in run.stdout.splitlines()],
+                         ["a.exr", "b.exr", "c.exr", "b.exr over a.exr", "c.exr over a.exr",
+                          "wrote e.png"])
+        self.assertEqual(run.stdout.replace("wrote e.png\n", ""),
+                         self.run_program("compare", "a.exr", "b.exr", "c.exr", "--ref",
+                                          "r.exr").stdout)
+        images = json.loads(self.run_program("compare", "a.exr", "b.exr", "c.exr", "r.exr",
+                                             "--json").stdout)["images"]
+        self.assertEqual([i["file"] for i in images], ["a.exr", "b.exr", "c.exr"])
+
+    def test_compare_of_what_is_exposed_differently(self):
+        for exposure in (1, 2):
+            self.run_program("render", self.cornell, "--height", 8, "-o", "a.exr", "-o",
+                             f"{exposure}.png", "--exposure", exposure, "-q")
+        self.run_program("render", self.cornell, "--height", 8, "-o", "auto.png", "-q")
+        for a, b, words in (("a.exr", "auto.png", ["a.exr is not exposed, auto.png exposed by "]),
+                            ("1.png", "2.png", ["1.png is exposed by 1 stops, 2.png exposed by 2"]),
+                            ("a.exr", "a.exr", []), ("1.png", "1.png", [])):
+            run = self.run_program("compare", a, b)
+            self.assertEqual(len(run.stderr.splitlines()), len(words), run.stderr)
+            for word in words:
+                self.assertIn("warning: " + word, run.stderr)
+
     def test_compare_refuses(self):
         self.run_program("render", self.cornell, "--height", 8, "-o", "a.exr", "-q")
         self.oiio("a.exr", "--ch", "R,G", "-o", "two.exr")
@@ -639,7 +923,7 @@ class CommandTest(unittest.TestCase):
                          sorted(chart["files"]))
         for words in ("64 lights", "relMSE", "reference: exhaustive", "cornell-chart/report.html"):
             self.assertIn(words, run.stdout)
-        self.assertEqual(run.stderr, "")
+        self.assertNotIn("warning", run.stderr)
         steps = [("exhaustive", 64), ("power", 1), ("power", 4), ("adaptive", 1), ("adaptive", 4)]
         # Seed by seed, all in turn.
         self.assertEqual([(r["sampler"], r["light_samples"], r["seed"]) for r in chart["runs"]],
@@ -725,18 +1009,94 @@ class CommandTest(unittest.TestCase):
         self.assertEqual(again["rays"], rays)
         self.assertEqual(again["later_light_samples"], 4)
 
-    def test_interrupts_leave_no_litter(self):
-        run = subprocess.Popen([PROGRAM, "render", self.cornell, "--height", "64", "-q", "--spp",
-                                "100000", "-o", "image.exr", "--checkpoint", "state",
-                                "--checkpoint-every", "0"], cwd=self.folder)
+    def test_a_checkpoint_becomes_an_image_at_any_time(self):
+        arguments = ["render", self.cornell, "--height", "40", "-q", "-o", "image.exr"]
+        several = ["--memory", "12M"]  # batches
+        self.run_program(*arguments[:-1], "whole.exr", "--spp", 16)
+        for more in ([], several):
+            run = self.start(*arguments, *more, "--spp", 4000, "--checkpoint", "state",
+                             "--checkpoint-every", 0)
+            self.wait_for("state")
+            run.kill()
+            run.wait()
+            before = (self.folder / "state").read_bytes()
+            for spp in (1, 2):
+                self.run_program(*arguments, *more, "--spp", spp, "--checkpoint", "state",
+                                 "--resume", "--stats", "s.json")
+                stats = json.loads((self.folder / "s.json").read_text())
+                self.assertGreaterEqual(stats["spp"], spp)
+                self.assertEqual(stats["batches"] > 1, bool(more))
+                found = json.loads(self.run_program("compare", "image.exr", "whole.exr",
+                                                    "--json").stdout)
+                self.assertLess(found["rmse"], 1)  # no part of it is missing
+            if more:  # no pixel is without a sample, and the state is what it was
+                self.assertEqual((self.folder / "state").read_bytes(), before)
+                self.refuse(*arguments, *more, "--spp", 5000, "--checkpoint", "state", "--resume",
+                            words=["--spp 5000", "batches", "4000"])
+            (self.folder / "state").unlink()
+
+    def start(self, *arguments, **options):
+        return subprocess.Popen([PROGRAM, *map(str, arguments)], cwd=self.folder, text=True,
+                                **options)
+
+    def wait_for(self, name):
         end = time.monotonic() + 120
-        while not (self.folder / "state").exists():
+        while not (self.folder / name).exists():
             self.assertLess(time.monotonic(), end)
             time.sleep(0.01)
-        time.sleep(0.3)  # it spends much of its time writing
-        run.send_signal(signal.SIGTERM)
-        self.assertEqual(run.wait(60), -signal.SIGTERM)
-        self.assertEqual(self.files(), ["state"])
+
+    def test_lines_come_as_they_are_said(self):
+        run = self.start("render", self.cornell, "--height", 64, "--spp", 1000000, "-o", "a.exr",
+                         stdout=subprocess.PIPE)
+        try:
+            ready, _, _ = select.select([run.stdout], [], [], 60)
+            self.assertTrue(ready)
+            self.assertIn("sampler ", run.stdout.readline())
+        finally:
+            run.kill()
+            run.communicate()
+
+    def test_an_interrupt_writes_the_image_so_far(self):
+        for number, name in ((signal.SIGINT, "SIGINT"), (signal.SIGTERM, "SIGTERM")):
+            with self.subTest(name):
+                run = self.start("render", self.cornell, "--height", 64, "--spp", 1000000, "-o",
+                                 "a.exr", "--checkpoint", "state", "--checkpoint-every", 0,
+                                 stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+                self.wait_for("state")
+                run.send_signal(number)
+                said, errors = run.communicate(timeout=60)
+                self.assertEqual(run.returncode, -number, errors)  # which a shell tells as 128 + n
+                spp = int(self.facts("a.exr")["spp"])
+                self.assertGreater(spp, 0)
+                self.assertIn(f"warning: interrupted at {spp} of 1000000 spp", errors)
+                self.assertIn("wrote a.exr", said)
+                self.assertEqual(self.facts("a.exr")["cut_short"], "true")
+                self.assertEqual(self.files(), ["a.exr", "state"])
+                # The state is of the same samples: the image is one of that many.
+                self.run_program("render", self.cornell, "--height", 64, "--spp", spp, "-o",
+                                 "b.exr", "-q")
+                self.assertEqual(self.rmse("a.exr", "b.exr"), 0)
+                self.run_program("render", self.cornell, "--height", 64, "--spp", 1, "-o", "b.exr",
+                                 "-q", "--checkpoint", "state", "--resume")
+                self.assertEqual(self.rmse("a.exr", "b.exr"), 0)
+                for file in self.files():
+                    (self.folder / file).unlink()
+
+    def test_a_second_interrupt_ends_at_once(self):
+        (self.folder / "a.exr").write_text("precious")
+        # Pixel samples of seconds, which are finished where there is a checkpoint.
+        run = self.start("render", self.cornell, "--height", 256, "--sampler", "exhaustive",
+                         "--emitter-points", 512, "--spp", 1000, "-o", "a.exr", "--checkpoint",
+                         "state", "--checkpoint-every", 0, stdout=subprocess.PIPE)
+        self.wait_for("state")
+        run.send_signal(signal.SIGINT)
+        time.sleep(0.1)  # two at once are one
+        self.assertIsNone(run.poll())
+        run.send_signal(signal.SIGINT)
+        run.communicate(timeout=20)
+        self.assertEqual(run.returncode, -signal.SIGINT)
+        self.assertEqual(self.files(), ["a.exr", "state"])
+        self.assertEqual((self.folder / "a.exr").read_text(), "precious")
 
     def test_an_interrupted_chart_goes_on(self):
         arguments = ["chart", self.cornell, "--emitter-points", "0", "--height", "48", "--samplers",
@@ -768,7 +1128,7 @@ class CommandTest(unittest.TestCase):
         chart, run = self.chart("--emitter-points", 0, "--samplers", "adaptive", "--light-samples",
                                 16, "--spp", 8, "--seeds", 2)
         reference = chart["reference"]
-        self.assertEqual(run.stderr, "")
+        self.assertNotIn("warning", run.stderr)
         self.assertGreater(reference["images"], 4)
         self.assertLess(100 * reference["relmse"], reference["judges_relmse"])
         self.assertGreater(reference["luminance_standard_error"], 0)

@@ -62,6 +62,42 @@ TEST(frame, too_many_lights_for_cuts_are_refused) {
         InputError);
 }
 
+// A render that is interrupted at any moment has whole pixel samples, of some pixels maybe none.
+TEST(frame, interrupts_leave_whole_samples) {
+    const test::TestScene& scene = test::scene_named("many");
+    // Between two passes of adaptive, and in the second batch of contribution.
+    for (const char* sampler : {"adaptive", "contribution"}) {
+        SCOPED_TRACE(sampler);
+        RenderOptions options = small_options(sampler);
+        options.clusters.tile_size = 8;
+        options.pixel_centre = true;
+        options.memory = 20'000'000;
+        options.spp = 1;
+        const Device& device = test::devices().front();
+        const FrameResult whole = test::render(device, scene, options);
+        EXPECT_FALSE(whole.is_cut_short);
+        EXPECT_EQ(whole.empty_pixels, 0u);
+        unsigned asked = 0;
+        options.interrupted = [&asked] { return ++asked > 4; };
+        const FrameResult part = test::render(device, scene, options);
+        EXPECT_TRUE(part.is_cut_short);
+        EXPECT_GT(part.empty_pixels, 0u);
+        EXPECT_LT(part.empty_pixels, whole.image.pixel_count());
+        EXPECT_NEAR(part.spp,
+                    1 - static_cast<double>(part.empty_pixels) / whole.image.pixel_count(), 1e-6);
+        std::size_t black = 0;
+        for (std::size_t i = 0; i < whole.image.values.size(); ++i) {
+            black += part.image.values[i] == 0 && whole.image.values[i] != 0;
+            if (part.image.values[i] != 0) {
+                EXPECT_EQ(part.image.values[i], whole.image.values[i]);
+            }
+        }
+        EXPECT_GT(black, 0u);
+        options.interrupted = [] { return true; };
+        EXPECT_EQ(test::render(device, scene, options).spp, 0);
+    }
+}
+
 // Less memory means more batches, not another image.
 TEST(frame, batches_do_not_change_the_image) {
     FOR_EACH_DEVICE(device)

@@ -83,7 +83,8 @@ Drawn draw_often(Device device, const Sampler& sampler) {
     Estimates estimates{device.allocate<float4>(item_count(tiles)),
                         device.allocate<float4>(item_count(tiles))};
     for (uint i = 0; i < draws; ++i) {
-        stage.draw(tiles, {i, 11, false}, 1, surfaces, tables, estimates, [](std::size_t) {});
+        stage.draw(tiles, {i, 11, false}, 1, surfaces, tables, estimates,
+                   [](std::size_t) { return true; });
         out.values.push_back(estimates.sums.download());
     }
     return out;
@@ -184,7 +185,7 @@ TEST(samples, boundaries_of_a_small_cdf) {
         for (uint i = 0; i < 40; ++i) {
             stage.draw(tiles, {i, 3, false}, 1, surfaces,
                        Arguments().set("power_cdf", device.upload(cdf)), estimates,
-                       [](std::size_t) {});
+                       [](std::size_t) { return true; });
             for (const float4& e : estimates.sums.download())
                 if (e.b > 0) ++counts[light_of(e)];
         }

@@ -8,6 +8,7 @@
 #include "chart/report.hpp"
 #include "clock.hpp"
 #include "commands/commands.hpp"
+#include "commands/repeat.hpp"
 #include "error.hpp"
 #include "output/error_picture.hpp"
 #include "output/write_file.hpp"
@@ -21,17 +22,6 @@ namespace fs = std::filesystem;
 
 constexpr unsigned default_height = 256;
 
-// As a shell takes it for one word.
-std::string quote(const std::string& word) {
-    const bool plain = !word.empty() && std::ranges::all_of(word, [](unsigned char c) {
-        return std::isalnum(c) != 0 || std::string_view("_./,:=+-").find(c) != std::string::npos;
-    });
-    if (plain) return word;
-    std::string out = "'";
-    for (const char c : word) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
-    return out + "'";
-}
-
 std::string join(const std::vector<uint>& values) {
     return fmt::format("{}", fmt::join(values, ","));
 }
@@ -39,17 +29,7 @@ std::string join(const std::vector<uint>& values) {
 // The scene with the options that say how it is seen, as for manylight render.
 std::string view_options(const ChartArguments& arguments, const LoadedScene& loaded) {
     const SceneArguments& scene = arguments.scene;
-    std::string out = quote(scene.file);
-    if (!scene.camera.empty()) out += " --camera " + quote(scene.camera);
-    if (scene.shift != std::pair(0.0, 0.0))
-        out += fmt::format(" --shift {},{}", scene.shift.first, scene.shift.second);
-    if (scene.emitter_points) out += fmt::format(" --emitter-points {}", *scene.emitter_points);
-    if (scene.seconds) out += fmt::format(" --at {}", *scene.seconds);
-    if (scene.cull_back_faces) out += " --cull-back-faces";
-    if (scene.storage != MeshStorage::automatic)
-        out += scene.storage == MeshStorage::shared ? " --instances shared" : " --instances copied";
-    if (!scene.variant.empty()) out += " --variant " + quote(scene.variant);
-    if (scene.lamp_scale != 1) out += fmt::format(" --lamp-scale {}", scene.lamp_scale);
+    std::string out = view_words(scene);
     if (!scene.device.empty()) out += " --device " + quote(scene.device);
     if (scene.threads > 0) out += fmt::format(" --threads {}", scene.threads);
     out += fmt::format(" --width {} --height {}", loaded.width, loaded.height);

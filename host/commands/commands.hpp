@@ -45,6 +45,8 @@ struct RenderArguments {
     std::string checkpoint;          // file to save the render's state to
     double checkpoint_seconds = 60;  // between two times
     bool resume = false;             // from the checkpoint, if there is one
+    std::string like;                // image whose render is repeated
+    bool repeats_aovs = false;       // the layers are that image's
     unsigned top_lights = 0;         // to report; 0: none
     std::string stats;
     bool quiet = false;
@@ -89,10 +91,9 @@ struct BenchArguments {
 };
 
 struct CompareArguments {
-    std::string image;
-    std::string other;      // the reference, unless there is one below
-    std::string reference;  // what both are judged by
-    std::string output;     // .png, picture of the errors
+    std::vector<std::string> images;  // to judge
+    std::string reference;            // what they are judged by
+    std::string output;               // .png, picture of the errors
     bool json = false;
 };
 

@@ -42,11 +42,12 @@ void print(const std::vector<Judged>& judged) {
         if (judged.size() > 1) say("{}: ", j.file);
         print(j.difference);
     }
-    if (judged.size() < 2) return;
     const Difference& a = judged[0].difference;
-    const Difference& b = judged[1].difference;
-    say("{} over {}: relMSE {:.4g}, MAPE {:.4g}\n", judged[1].file, judged[0].file,
-        b.relmse / a.relmse, b.mape / a.mape);
+    for (std::size_t i = 1; i < judged.size(); ++i) {
+        const Difference& b = judged[i].difference;
+        say("{} over {}: relMSE {:.4g}, MAPE {:.4g}\n", judged[i].file, judged[0].file,
+            b.relmse / a.relmse, b.mape / a.mape);
+    }
 }
 
 void print_json(const std::vector<Judged>& judged, const std::string& reference) {
@@ -69,28 +70,46 @@ void write_picture(const std::string& path, const std::vector<Judged>& judged) {
     write_png(path, draw_error_picture(panels), 1, {});
 }
 
+// The stops by which a picture for a screen was exposed, as its header tells; 0 of radiance.
+std::string stops_of(const std::string& file) {
+    const auto facts = read_facts(file);
+    const auto exposure = facts.find("exposure");
+    return exposure == facts.end() ? "0" : exposure->second;
+}
+
+void warn_of_exposure(const std::string& file, const std::string& reference) {
+    const auto words = [](const std::string& stops) {
+        return stops == "0" ? "not exposed" : "exposed by " + stops + " stops";
+    };
+    const std::string a = stops_of(file);
+    const std::string b = stops_of(reference);
+    if (a != b)
+        warn(
+            "{} is {}, {} {}: the figures tell of that too; compare .exr files, or give both "
+            "renders the same --exposure",
+            file, words(a), reference, words(b));
+}
+
 }  // namespace
 
 int run_compare(const CompareArguments& arguments) {
-    std::vector<std::string> files = {arguments.image};
-    std::string reference_file = arguments.other;
-    if (!arguments.reference.empty()) {
-        files.push_back(arguments.other);
-        reference_file = arguments.reference;
-    }
+    const std::string& reference_file = arguments.reference;
     if (!arguments.output.empty()) {
         const std::string ending = ".png";
         check_output("--output", arguments.output, {&ending, 1});
-        for (const std::string& input : {arguments.image, arguments.other, arguments.reference})
+        std::vector<std::string> inputs = arguments.images;
+        inputs.push_back(reference_file);
+        for (const std::string& input : inputs)
             if (same_file(arguments.output, input))
                 throw InputError("--output {}: is one of the images", arguments.output);
     }
     const Image reference = read_rgb(reference_file);
     std::vector<Judged> judged;
     std::size_t bad = 0;
-    for (const std::string& file : files) {
+    for (const std::string& file : arguments.images) {
         Judged j{file, read_rgb(file), {}};
         j.difference = compare_images(j.image, reference, file, reference_file);
+        warn_of_exposure(file, reference_file);
         const Difference& d = j.difference;
         if (d.bad > 0)
             warn(

@@ -6,8 +6,11 @@
 #include <cmath>
 
 #include "commands/commands.hpp"
+#include "commands/repeat.hpp"
 #include "error.hpp"
+#include "output/image.hpp"
 #include "pipeline/aov.hpp"
+#include "print.hpp"
 
 namespace manylight {
 namespace {
@@ -87,11 +90,98 @@ constexpr std::uint64_t largest_uint = 4294967295;
 constexpr uint most_spp = 1 << 20;
 
 const std::map<std::string, MeshStorage> mesh_storages = {{"auto", MeshStorage::automatic},
-                                                          {"shared", MeshStorage::shared},
-                                                          {"copied", MeshStorage::copied}};
+                                                          {"copied", MeshStorage::copied},
+                                                          {"shared", MeshStorage::shared}};
 
 const std::map<std::string, unsigned> device_forms = {
     {"auto", 0}, {"gpu", 1}, {"4", 4}, {"8", 8}, {"16", 16}};
+
+// "a, b or c".
+std::string list_words(const std::vector<std::string>& words) {
+    std::string out;
+    for (std::size_t i = 0; i < words.size(); ++i)
+        out += (i == 0 ? "" : i + 1 < words.size() ? ", " : " or ") + words[i];
+    return out;
+}
+
+// An option whose value is one of a few words. (CLI11's own transformer tells users of its maps.)
+template <class T>
+void add_choice(CLI::App& command, const std::string& name, T& value,
+                const std::map<std::string, T>& choices, const std::string& help) {
+    command.add_option_function<std::string>(
+        name,
+        [name, &value, choices](const std::string& text) {
+            std::vector<std::string> words;
+            for (const auto& [word, meaning] : choices) words.push_back(word);
+            if (!choices.contains(text))
+                throw CLI::ValidationError(name, text + " is not " + list_words(words));
+            value = choices.at(text);
+        },
+        help);
+}
+
+// How many characters to insert, delete, replace or swap with the next take one word to another.
+// Source: the optimal string alignment distance (Damerau 1964, Levenshtein 1966).
+std::size_t edit_distance(const std::string& a, const std::string& b) {
+    std::vector<std::vector<std::size_t>> d(a.size() + 1, std::vector<std::size_t>(b.size() + 1));
+    for (std::size_t i = 0; i <= a.size(); ++i)
+        for (std::size_t j = 0; j <= b.size(); ++j) {
+            if (i == 0 || j == 0) {
+                d[i][j] = i + j;
+                continue;
+            }
+            d[i][j] = std::min({d[i - 1][j] + 1, d[i][j - 1] + 1,
+                                d[i - 1][j - 1] + (a[i - 1] == b[j - 1] ? 0 : 1)});
+            if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1])
+                d[i][j] = std::min(d[i][j], d[i - 2][j - 2] + 1);
+        }
+    return d[a.size()][b.size()];
+}
+
+// "; did you mean X?" where one of the words is near, or begins so; else nothing.
+std::string suggestion(const std::string& word, const std::vector<std::string>& words) {
+    const std::string* best = nullptr;
+    std::size_t least = std::max<std::size_t>(word.size() / 3, 1) + 1;
+    for (const std::string& w : words) {
+        const bool begins = word.size() >= 3 && w.starts_with(word);
+        const std::size_t distance = begins ? 1 : edit_distance(word, w);
+        if (distance >= least) continue;
+        least = distance;
+        best = &w;
+    }
+    return best == nullptr ? "" : "; did you mean " + *best + "?";
+}
+
+std::vector<std::string> names_of_commands(const CLI::App& app) {
+    std::vector<std::string> names;
+    for (const CLI::App* command : app.get_subcommands({})) names.push_back(command->get_name());
+    return names;
+}
+
+std::string unknown_command(const CLI::App& app, const std::string& word) {
+    if (word.ends_with(".gltf") || word.ends_with(".glb"))
+        return fmt::format("{}: is no command; 'manylight render {}' renders it", word, word);
+    return fmt::format("{}: is no command{}", word, suggestion(word, names_of_commands(app)));
+}
+
+// What is wrong with words that no option takes.
+std::string unknown_words(const CLI::App& app) {
+    const std::vector<std::string> words = app.remaining(true);
+    if (app.get_subcommands().empty()) {
+        const auto first = std::ranges::find_if(words, [](auto& w) { return !w.starts_with("-"); });
+        if (first != words.end()) return unknown_command(app, *first);
+    }
+    const CLI::App& command = app.get_subcommands().empty() ? app : *app.get_subcommands().front();
+    const std::string& word = words.front();
+    if (!word.starts_with("-"))
+        return fmt::format("{}: {}: is one argument too many", command.get_name(), word);
+    std::vector<std::string> options;
+    for (const CLI::Option* option : command.get_options())
+        for (const std::string& name : option->get_lnames()) options.push_back("--" + name);
+    const std::string name = word.substr(0, word.find('='));
+    const std::string known = suggestion(name, options);
+    return fmt::format("{}: {}: there is no such option{}", command.get_name(), name, known);
+}
 
 // What a command that renders a scene needs beside its file.
 void add_view(CLI::App& command, SceneArguments& scene, unsigned height = 512) {
@@ -113,19 +203,14 @@ void add_view(CLI::App& command, SceneArguments& scene, unsigned height = 512) {
                      "(default: all is seen from both sides, as in Blender)");
     command.add_option("--variant", scene.variant,
                        "materials of that variant of the file's (KHR_materials_variants)");
-    command
-        .add_option("--instances", scene.storage,
-                    "meshes that stand in several places: shared (stored once), copied (faster to "
-                    "trace) or auto (shared where copies would take more than 256 MiB)")
-        ->transform(CLI::CheckedTransformer(mesh_storages).description(""));
+    add_choice(command, "--instances", scene.storage, mesh_storages,
+               "meshes that stand in several places: shared (stored once), copied (faster to "
+               "trace) or auto (shared where copies would take more than 256 MiB)");
     command.add_option("--device", scene.device,
                        "OpenCL device: number or part of its name, see 'manylight devices'");
-    command
-        .add_option(
-            "--device-form", scene.lanes,
-            "how kernels are laid out: auto (as suits the device), in vectors of 4, 8 or 16 "
-            "lanes, or gpu (what GPUs run, on any device)")
-        ->transform(CLI::CheckedTransformer(device_forms).description(""));
+    add_choice(command, "--device-form", scene.lanes, device_forms,
+               "how kernels are laid out: auto (as suits the device), in vectors of 4, 8 or 16 "
+               "lanes, or gpu (what GPUs run, on any device)");
     command.add_option("--threads", scene.threads, "processors that a CPU device may use")
         ->check(whole(1, 4096));
     command.add_option("--width", scene.width, "image width (default: from the height)")
@@ -138,9 +223,7 @@ void add_view(CLI::App& command, SceneArguments& scene, unsigned height = 512) {
 }
 
 void add_scene(CLI::App& command, SceneArguments& scene, unsigned height = 512) {
-    command.add_option("file", scene.file, "glTF 2.0 scene, .gltf or .glb")
-        ->required()
-        ->check(not_empty);
+    command.add_option("file", scene.file, "glTF 2.0 scene, .gltf or .glb")->check(not_empty);
     add_view(command, scene, height);
 }
 
@@ -184,6 +267,54 @@ std::string aov_list() {
     std::string text = "\nLayers for --aov:\n";
     for (const Aov& aov : all_aovs()) text += fmt::format("  {:<24}{}\n", aov.name, aov.summary);
     return text;
+}
+
+// Throws for a missing argument: `what` it is.
+void require(const CLI::App& command, bool is_there, const std::string& what) {
+    if (is_there) return;
+    throw InputError("{}: {} is missing; 'manylight {} --help' shows examples", command.get_name(),
+                     what, command.get_name());
+}
+
+void require_scene(const CLI::App& command, const SceneArguments& scene) {
+    require(command, !scene.file.empty(), "the scene's file");
+}
+
+// Pixel samples that an image has, from its header; more where the last was not taken everywhere.
+std::string whole_spp(const std::string& spp) {
+    return fmt::format("{:.0f}", std::max(std::ceil(std::strtod(spp.c_str(), nullptr)), 1.0));
+}
+
+// Gives all options that an image's header tells, and the command line does not, their values.
+void repeat(CLI::App& command, const std::string& image) {
+    std::map<std::string, std::string> facts = read_facts(image);
+    if (!facts.contains("file") || !facts.contains("sampler"))
+        throw InputError("--like {}: its header tells of no render of manylight's", image);
+    if (facts["version"] != MANYLIGHT_VERSION)
+        warn("--like {}: was rendered by manylight {}, this is {}: the image may differ", image,
+             facts["version"], MANYLIGHT_VERSION);
+    const bool stops_otherwise =
+        command.count("--spp") + command.count("--time") + command.count("--target-error") > 0;
+    if (stops_otherwise)
+        facts.erase("spp");
+    else if (facts["cut_short"] == "true")
+        warn("--like {}: was cut short at {} spp; {} are rendered", image, facts["spp"],
+             whole_spp(facts["spp"]));
+    if (facts.contains("spp")) facts["spp"] = whole_spp(facts["spp"]);
+    for (CLI::Option* option : command.get_options()) {
+        const std::string name =
+            option->get_lnames().empty() ? option->get_name(true) : option->get_lnames().front();
+        const auto fact = facts.find(field_of(name));
+        if (fact == facts.end() || option->count() > 0) continue;
+        const bool is_flag = option->get_expected_min() == 0;
+        if (is_flag && fact->second == "false") continue;
+        try {
+            option->add_result(is_flag ? option->get_flag_value(name, "") : fact->second);
+            option->run_callback();
+        } catch (const CLI::ParseError& error) {
+            throw InputError("--like {}: {}", image, error.what());
+        }
+    }
 }
 
 void add_render(CLI::App& app, std::function<int()>& run) {
@@ -252,6 +383,11 @@ void add_render(CLI::App& app, std::function<int()>& run) {
         "--memory", [&o](const std::string& text) { o.memory = parse_bytes(text); },
         "most memory on the device, such as 512M (default: half of it, at most 2G)");
     command->add_flag("-q,--quiet", arguments->quiet, "print errors and warnings only");
+    command
+        ->add_option("--like", arguments->like,
+                     "repeat the render that made this image, by its header; options that are "
+                     "given here count instead")
+        ->check(not_empty);
     add_clusters(*command, o.clusters);
     command->footer(sampler_list(true) + aov_list() +
                     "\nExamples:\n"
@@ -262,8 +398,12 @@ void add_render(CLI::App& app, std::function<int()>& run) {
                     "  manylight render scene.glb --sampler exhaustive -o reference.exr\n"
                     "  manylight render scene.glb --cluster-map clusters.png --stats stats.json\n"
                     "  manylight render scene.glb --top-lights 10\n"
+                    "  manylight render --like a.exr -o again.exr\n"
                     "  manylight render scene.glb --spp 4096 --checkpoint state --resume\n");
-    command->callback([&run, arguments] {
+    command->callback([&run, arguments, command] {
+        arguments->repeats_aovs = command->count("--aov") == 0;
+        if (!arguments->like.empty()) repeat(*command, arguments->like);
+        require_scene(*command, arguments->scene);
         if (arguments->sampler != "auto") (void)find_sampler(arguments->sampler);
         RenderOptions& o = arguments->options;
         const bool open_ended = arguments->seconds > 0 || o.target_error > 0;
@@ -294,11 +434,9 @@ void add_inspect(CLI::App& app, std::function<int()>& run) {
     add_scene(*command, arguments->scene);
     InspectArguments& a = *arguments;
     a.options.light_samples = 4;
-    command
-        ->add_option_function<std::string>(
-            "--pixel", [&a](const std::string& text) { parse_pixel(text, a); },
-            "X,Y: the pixel, from the top left")
-        ->required();
+    command->add_option_function<std::string>(
+        "--pixel", [&a](const std::string& text) { parse_pixel(text, a); },
+        "X,Y: the pixel, from the top left");
     command->add_option("-o,--output", a.output,
                         "picture, .png (default: the scene's name with -pixel.png, here)");
     command->add_option("--json", a.json, "file for the same as JSON");
@@ -324,7 +462,11 @@ void add_inspect(CLI::App& app, std::function<int()>& run) {
         "  manylight inspect scene.glb --pixel 320,200\n"
         "  manylight inspect scene.glb --pixel 320,200 --top-lights 8 -o why.png --json "
         "why.json\n");
-    command->callback([&run, arguments] { run = [arguments] { return run_inspect(*arguments); }; });
+    command->callback([&run, arguments, command] {
+        require_scene(*command, arguments->scene);
+        require(*command, command->count("--pixel") > 0, "--pixel X,Y");
+        run = [arguments] { return run_inspect(*arguments); };
+    });
 }
 
 void add_verify(CLI::App& app, std::function<int()>& run) {
@@ -359,12 +501,12 @@ void add_bench(CLI::App& app, std::function<int()>& run) {
     auto arguments = std::make_shared<BenchArguments>();
     CLI::App* command =
         app.add_subcommand("bench", "measure traversal, beside Embree, and the stages of a frame");
-    command->add_option("what", arguments->what, "traversal, stages, or a scene file for both")
-        ->required();
+    command->add_option("what", arguments->what, "traversal, stages, or a scene file for both");
     command->add_option("--mesh", arguments->mesh,
                         "traversal, stages: glTF file whose mesh stands in the dragon's room");
-    command->add_option("--view", arguments->view, "traversal, stages: far (the default) or close")
-        ->check(CLI::IsMember({"far", "close"}));
+    add_choice<std::string>(*command, "--view", arguments->view,
+                            {{"close", "close"}, {"far", "far"}},
+                            "traversal, stages: far (the default) or close");
     command->add_flag("--loading", arguments->loading, "of a file: how fast it loads, instead");
     command->add_option("--json", arguments->json, "file for all figures");
     command->add_option("--rounds", arguments->rounds, "rounds in which all take turns")
@@ -376,8 +518,8 @@ void add_bench(CLI::App& app, std::function<int()>& run) {
         ->capture_default_str();
     for (const auto& [name, value] : {std::pair{"--bvh-width", &arguments->bvh_width},
                                       std::pair{"--bvh-block", &arguments->bvh_block}})
-        command->add_option(name, *value, "4, 8 or 16 (default: as suits the device)")
-            ->check(CLI::IsMember({4, 8, 16}));
+        add_choice<unsigned>(*command, name, *value, {{"4", 4}, {"8", 8}, {"16", 16}},
+                             "4, 8 or 16 (default: as suits the device)");
     add_view(*command, arguments->scene);
     command->footer(
         "\nA figure is printed only after its hits, or its stages, were judged by the scalar "
@@ -386,7 +528,9 @@ void add_bench(CLI::App& app, std::function<int()>& run) {
         "  manylight bench traversal --mesh dragon.glb --json traversal.json\n"
         "  manylight bench scene.glb --device intel\n"
         "  manylight bench large.glb --loading\n");
-    command->callback([&run, arguments] {
+    command->callback([&run, arguments, command] {
+        require(*command, !arguments->what.empty(),
+                "what to measure (traversal, stages or a file)");
         (void)find_sampler(arguments->sampler);
         run = [arguments] { return run_bench(*arguments); };
     });
@@ -418,9 +562,9 @@ void add_scene_command(CLI::App& app, std::function<int()>& run) {
                     "  manylight scene cornell -o cornell.glb\n"
                     "  manylight scene city --lights 1000000 -o city.glb\n"
                     "  manylight scene dragon --mesh bunny.glb -o bunny-room.glb\n");
-    command->callback([&run, arguments] {
-        if (!arguments->list && arguments->name.empty()) throw CLI::RequiredError("name");
-        if (!arguments->list && arguments->output.empty()) throw CLI::RequiredError("--output");
+    command->callback([&run, arguments, command] {
+        require(*command, arguments->list || !arguments->name.empty(), "the scene's name");
+        require(*command, arguments->list || !arguments->output.empty(), "--output FILE.glb");
         run = [arguments] { return run_scene(*arguments); };
     });
 }
@@ -478,8 +622,10 @@ void add_chart(CLI::App& app, std::function<int()>& run) {
                     "  manylight chart scene.glb --samplers lighttree,adaptive --seeds 10 -o "
                     "two-samplers\n"
                     "  manylight chart scene.glb --light-samples 4 --spp 1,4,16 --height 512\n");
-    command->callback([&run, arguments] {
-        for (const std::string& name : arguments->options.samplers) (void)find_sampler(name);
+    command->callback([&run, arguments, command] {
+        require_scene(*command, arguments->scene);
+        for (const std::string& name : arguments->options.samplers)
+            (void)find_sampler(name, "--samplers");
         run = [arguments] { return run_chart(*arguments); };
     });
 }
@@ -487,13 +633,10 @@ void add_chart(CLI::App& app, std::function<int()>& run) {
 void add_compare(CLI::App& app, std::function<int()>& run) {
     auto arguments = std::make_shared<CompareArguments>();
     CLI::App* command =
-        app.add_subcommand("compare", "measure an image's error against another, or two images'");
-    command->add_option("image", arguments->image, "image to judge")->required();
-    command
-        ->add_option("reference", arguments->other,
-                     "what it should be; with --ref, a second image to judge")
-        ->required();
-    command->add_option("--ref", arguments->reference, "what both should be");
+        app.add_subcommand("compare", "measure the errors of images against what they should be");
+    command->add_option("images", arguments->images,
+                        "images to judge, and last what they should be, unless --ref names it");
+    command->add_option("--ref", arguments->reference, "what all images should be");
     command->add_option("-o,--output", arguments->output, "picture of the errors, .png");
     command->add_flag("--json", arguments->json, "print JSON");
     command->footer(
@@ -501,8 +644,34 @@ void add_compare(CLI::App& app, std::function<int()>& run) {
         "as sRGB codes.\nExits with 3 where an image to judge holds what is no finite "
         "number.\n\nExamples:\n"
         "  manylight compare render.exr reference.exr\n"
+        "  manylight compare a.exr b.exr c.exr reference.exr\n"
         "  manylight compare a.exr b.exr --ref reference.exr -o errors.png\n");
-    command->callback([&run, arguments] { run = [arguments] { return run_compare(*arguments); }; });
+    command->callback([&run, arguments, command] {
+        require(*command, !arguments->images.empty(), "the image to judge");
+        if (arguments->reference.empty()) {
+            require(*command, arguments->images.size() > 1, "the image that it should be");
+            arguments->reference = arguments->images.back();
+            arguments->images.pop_back();
+        }
+        run = [arguments] { return run_compare(*arguments); };
+    });
+}
+
+void add_help(CLI::App& app, std::function<int()>& run) {
+    auto name = std::make_shared<std::string>();
+    CLI::App* command =
+        app.add_subcommand("help", "the same as --help, of a command if one is named");
+    command->add_option("command", *name, "render, inspect, ...");
+    command->callback([&app, &run, name] {
+        if (!name->empty() && std::ranges::count(names_of_commands(app), *name) == 0)
+            throw InputError("help: {}", unknown_command(app, *name));
+        run = [name] {
+            std::string words[] = {"manylight", "--help", *name};
+            char* arguments[] = {words[0].data(), words[1].data(), words[2].data()};
+            if (!name->empty()) std::swap(arguments[1], arguments[2]);
+            return run_program(name->empty() ? 2 : 3, arguments);
+        };
+    });
 }
 
 }  // namespace
@@ -525,10 +694,13 @@ int run_program(int argc, char** argv) {
     });
     add_chart(app, run);
     add_compare(app, run);
+    add_help(app, run);
     try {
         app.parse(argc, argv);
     } catch (const CLI::Success& help) {
         return app.exit(help);
+    } catch (const CLI::ExtrasError&) {
+        throw InputError("{}", unknown_words(app));
     } catch (const CLI::ParseError& error) {
         throw InputError("{}", error.what());
     }

@@ -5,15 +5,19 @@
 #include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "clock.hpp"
 #include "commands/commands.hpp"
+#include "commands/repeat.hpp"
 #include "error.hpp"
 #include "output/cluster_map.hpp"
 #include "output/write_file.hpp"
 #include "pipeline/aov.hpp"
 #include "pipeline/frame.hpp"
+#include "pipeline/top_lights.hpp"
 #include "print.hpp"
+#include "signals.hpp"
 
 namespace manylight {
 namespace {
@@ -69,17 +73,27 @@ void check_checkpoint(const RenderArguments& arguments) {
             arguments.checkpoint);
 }
 
-// Renders on from the checkpoint, if asked for and there is one, and saves to it.
-FrameResult render_frame(Frame& frame, const RenderArguments& arguments) {
+// What to go on from, if asked for and there.
+std::optional<Checkpoint> find_checkpoint(const RenderArguments& arguments) {
+    std::error_code error;
+    if (!arguments.resume || !fs::exists(arguments.checkpoint, error)) return {};
+    return read_checkpoint(arguments.checkpoint);
+}
+
+// Renders, on from the checkpoint if there is one, and saves to it.
+FrameResult render_frame(Frame& frame, const RenderArguments& arguments,
+                         const std::optional<Checkpoint>& checkpoint) {
     const std::string& file = arguments.checkpoint;
     Progress progress("rendering", arguments.quiet);
     if (file.empty()) return frame.render(progress);
-    std::optional<FrameState> state;
-    if (arguments.resume && fs::exists(file)) state = read_checkpoint(file, frame.name());
     const std::string name = frame.name();
+    if (checkpoint && checkpoint->render != name)
+        throw InputError(
+            "--resume: {}: is of another render: the scene, the options or the device differ",
+            file);
     const Saving saving{arguments.checkpoint_seconds,
                         [&](const FrameState& now) { write_checkpoint(file, name, now); }};
-    return frame.render(progress, saving, state ? &*state : nullptr);
+    return frame.render(progress, saving, checkpoint ? &checkpoint->state : nullptr);
 }
 
 void print_plan(const LoadedScene& loaded, const Plan& plan, const DeviceInfo& device) {
@@ -92,46 +106,42 @@ void print_plan(const LoadedScene& loaded, const Plan& plan, const DeviceInfo& d
     say("; {} batch{}\n", plan.batches, plan.batches == 1 ? "" : "es");
 }
 
-// All parameters that the image depends on.
-json make_parameters(const RenderOptions& o, const LoadedScene& loaded, const FrameResult& result) {
-    return {
-        {"scene", loaded.scene.file},
-        {"camera", loaded.view.name},
-        {"emitter_points", loaded.emitter_points},
-        {"sampler", o.sampler},
-        {"light_samples", result.light_samples},
-        {"later_light_samples", result.later_light_samples},
-        {"spp", result.spp},
-        {"seed", o.seed},
-        {"pixel_centre", !o.jitters()},
-        {"hide_emitters", o.hide_emitters},
-        {"reflections", o.reflections},
-        {"width", o.width},
-        {"height", o.height},
-        {"tile_size", o.clusters.tile_size},
-        {"max_depth", o.clusters.max_depth},
-        {"normal_threshold", o.clusters.normal_threshold},
-        {"visibility_threshold", o.clusters.shadow.threshold},
-    };
+// All options that the image depends on, and the pixel samples that it has: with as many, they
+// repeat it.
+OptionList options_of(const RenderArguments& arguments, const RenderOptions& options,
+                      const LoadedScene& loaded, const Device& device, const FrameResult& result) {
+    SceneArguments scene = arguments.scene;
+    if (scene.camera.empty() && !loaded.scene.views.empty()) scene.camera = loaded.view.name;
+    scene.emitter_points = loaded.emitter_points;
+    OptionList list = view_options(scene);
+    for (auto& option : image_options(options)) list.push_back(std::move(option));
+    if (result.spp == std::floor(result.spp))
+        list.emplace_back("spp", static_cast<uint>(result.spp));
+    else
+        list.emplace_back("spp", result.spp);
+    if (options.memory > 0) list.emplace_back("memory", options.memory);
+    list.emplace_back("device", device.info().name);
+    const unsigned lanes = device.form().lanes;
+    list.emplace_back("device-form", lanes == 1 ? "gpu" : std::to_string(lanes));
+    return list;
 }
 
-json make_stats(json parameters, const LoadedScene& loaded, const Plan& plan,
+json make_stats(const OptionList& options, const LoadedScene& loaded, const Plan& plan,
                 const FrameResult& result, Device& device) {
-    json stats = std::move(parameters);
-    stats["version"] = MANYLIGHT_VERSION;
-    stats["device"] = device.info().name;
-    stats["platform"] = device.info().platform;
+    json stats = {{"version", MANYLIGHT_VERSION},
+                  {"platform", device.info().platform},
+                  {"first_light_samples", result.light_samples},
+                  {"later_light_samples", result.later_light_samples}};
+    for (const auto& [option, value] : options) stats[field_of(option)] = value;
     stats["triangles"] = loaded.scene.seen_triangle_count();
     stats["lights"] = loaded.scene.lights.size();
     stats["clusters"] = result.clusters;
     stats["batches"] = plan.batches;
+    stats["cut_short"] = result.is_cut_short;
     stats["rays"] = {{"primary", result.primary_rays}, {"shadow", result.shadow_rays}};
     stats["memory_bytes"] = {{"device_peak", device.peak_bytes()},
                              {"planned", plan.total_bytes()},
                              {"matrix", plan.matrix_bytes}};
-    stats["seconds"] = {{"compile", device.compile_seconds()},
-                        {"prepare", result.prepare_seconds},
-                        {"render", result.render_seconds}};
     if (result.error)
         stats["error"] = {{"relmse", result.error->relmse},
                           {"standard_error", result.error->standard_error}};
@@ -144,20 +154,19 @@ json make_stats(json parameters, const LoadedScene& loaded, const Plan& plan,
     return stats;
 }
 
-Metadata make_metadata(const json& parameters, const json& stats) {
-    Metadata metadata = {{"Software", "manylight " MANYLIGHT_VERSION},
-                         {"manylight:version", MANYLIGHT_VERSION},
-                         {"manylight:device", stats["device"].get<std::string>()},
-                         {"manylight:seconds", stats["seconds"]["total"].get<float>()}};
-    for (const auto& [key, value] : parameters.items()) {
-        const std::string name = "manylight:" + key;
-        if (value.is_string())
-            metadata[name] = value.get<std::string>();
-        else if (value.is_number_float())
-            metadata[name] = value.get<float>();
-        else  // integers as text: a seed may not fit a signed one
-            metadata[name] = value.dump();
-    }
+Metadata make_metadata(const OptionList& options, const FrameResult& result, double seconds,
+                       const Device& device) {
+    Metadata metadata = {
+        {"Software", "manylight " MANYLIGHT_VERSION},
+        {"manylight:version", MANYLIGHT_VERSION},
+        {"manylight:platform", device.info().platform},
+        {"manylight:first_light_samples", std::to_string(result.light_samples)},
+        {"manylight:later_light_samples", std::to_string(result.later_light_samples)},
+        {"manylight:cut_short", result.is_cut_short ? "true" : "false"},
+        {"manylight:seconds", static_cast<float>(seconds)}};
+    // As text: a seed may not fit a signed integer, nor a number a float.
+    for (const auto& [option, value] : options)
+        metadata["manylight:" + field_of(option)] = text_of(value);
     return metadata;
 }
 
@@ -172,10 +181,13 @@ void warn_if_not_finite(const Image& image) {
     if (bad > 0) warn("{} pixel values are not finite numbers", bad);
 }
 
-void write_files(const RenderArguments& arguments, const std::vector<std::string>& images,
-                 const FrameResult& result, const json& stats, const Metadata& metadata) {
-    const float exposure =
-        arguments.exposure ? std::exp2(*arguments.exposure) : auto_exposure(result.image);
+void write_images(const RenderArguments& arguments, const std::vector<std::string>& images,
+                  const FrameResult& result, const Metadata& metadata) {
+    // By as many stops as the header says, so that these make the same picture.
+    const float stops = arguments.exposure.value_or(std::log2(auto_exposure(result.image)));
+    const float exposure = std::exp2(stops);
+    Metadata exposed = metadata;
+    exposed["manylight:exposure"] = fmt::format("{}", stops);
     std::vector<Image> layers = {result.image};
     for (const auto& [name, image] : result.aovs)
         if (std::ranges::count(arguments.options.aovs, name)) layers.push_back(image);
@@ -183,15 +195,17 @@ void write_files(const RenderArguments& arguments, const std::vector<std::string
         if (path.ends_with(".exr"))
             write_exr(path, layers, metadata);
         else
-            write_png(path, result.image, exposure, metadata);
+            write_png(path, result.image, exposure, exposed);
     }
     if (!arguments.cluster_map.empty())
         write_png(arguments.cluster_map, draw_cluster_map(result.image, exposure, result.aovs), 1,
-                  metadata);
-    if (!arguments.stats.empty()) {
-        const std::string text = stats.dump(2, ' ', true, json::error_handler_t::replace) + "\n";
-        write_file(arguments.stats, std::as_bytes(std::span(text)));
-    }
+                  exposed);
+}
+
+void write_stats(const std::string& path, const json& stats) {
+    if (path.empty()) return;
+    const std::string text = stats.dump(2, ' ', true, json::error_handler_t::replace) + "\n";
+    write_file(path, std::as_bytes(std::span(text)));
 }
 
 // When rendering has to end for everything to be written in time.
@@ -210,14 +224,21 @@ Clock::time_point deadline_of(const RenderArguments& arguments,
                                  std::chrono::duration<double>(arguments.seconds - writing));
 }
 
-void print_summary(const RenderOptions& options, const FrameResult& result, double seconds) {
+// The parts of a run, in their order, with their seconds: together all of it.
+using Phases = std::vector<std::pair<const char*, double>>;
+
+void print_summary(const RenderOptions& options, const FrameResult& result, const Phases& phases) {
     const std::string later = result.later_light_samples == result.light_samples
                                   ? ""
                                   : fmt::format(", later {}", result.later_light_samples);
-    say("{}, {} light samples{}, {:.4g} spp, {} x {}: {:.2f} s (prepare {:.2f}, render "
-        "{:.2f})\n",
-        options.sampler, result.light_samples, later, result.spp, options.width, options.height,
-        seconds, result.prepare_seconds, result.render_seconds);
+    double seconds = 0;
+    std::string parts;
+    for (const auto& [name, part] : phases) {
+        seconds += part;
+        parts += fmt::format("{}{} {:.2f}", parts.empty() ? "" : ", ", name, part);
+    }
+    say("{}, {} light samples{}, {:.4g} spp, {} x {}: {:.2f} s ({})\n", options.sampler,
+        result.light_samples, later, result.spp, options.width, options.height, seconds, parts);
     if (!result.error) return;
     say("estimated relMSE {:.3g} +- {:.2g} (95%)\n", result.error->relmse,
         1.96 * result.error->standard_error);
@@ -225,16 +246,39 @@ void print_summary(const RenderOptions& options, const FrameResult& result, doub
         warn("--target-error {}: not reached", options.target_error);
 }
 
+bool is_black(const Image& image) {
+    return std::ranges::all_of(image.values, [](float v) { return v == 0; });
+}
+
+void warn_of_interrupt(const RenderOptions& options, const FrameResult& result) {
+    if (result.spp == 0)
+        return warn("interrupted before any pixel sample was done: nothing is written");
+    const bool open_ended = options.deadline || options.target_error > 0;
+    const double empty =
+        static_cast<double>(result.empty_pixels) / static_cast<double>(result.image.pixel_count());
+    warn("interrupted at {:.4g}{} spp{}", result.spp,
+         open_ended ? "" : fmt::format(" of {}", options.spp),
+         empty > 0
+             ? fmt::format("; {:.3g}% of the pixels have no sample and are black", 100 * empty)
+             : "");
+}
+
 }  // namespace
 
 int run_render(const RenderArguments& arguments) {
     const auto start = Clock::now();
+    Phases phases = {
+        {"start", std::max(std::chrono::duration<double>(start - process_start()).count(), 0.0)}};
+    auto phase_ends = [&phases, begun = start](const char* name) mutable {
+        phases.emplace_back(name, seconds_since(begun));
+        begun = Clock::now();
+    };
     std::vector<std::string> images = arguments.outputs;
     if (images.empty()) images = {fs::path(arguments.scene.file).stem().string() + ".png"};
     check_files(arguments, images);
     check_checkpoint(arguments);
     RenderOptions options = arguments.options;
-    if (!options.aovs.empty() &&
+    if (!options.aovs.empty() && !arguments.repeats_aovs &&
         std::ranges::none_of(images, [](const std::string& i) { return i.ends_with(".exr"); }))
         throw InputError("--aov {}: layers go to an .exr file; name one with --output",
                          options.aovs[0]);
@@ -244,12 +288,13 @@ int run_render(const RenderArguments& arguments) {
                              arguments.cluster_map, arguments.sampler);
         for (const char* name : {"cluster", "representative"}) options.aovs.emplace_back(name);
     }
+    const std::optional<Checkpoint> checkpoint = find_checkpoint(arguments);
+    if (checkpoint) options.begun_spp = checkpoint->state.get<uint>("spp");
 
     const auto compilers = std::make_shared<Compilers>(arguments.scene.threads);
     const LoadedScene loaded = load(arguments.scene, arguments.quiet);
     for (const auto& [option, path] : files_of(arguments, images))
         refuse_scene_file(loaded.scene, option, path);
-    const double load_seconds = seconds_since(start);
     options.sampler = arguments.sampler;
     if (arguments.sampler == "auto") {
         const SamplerChoice choice = choose_sampler(loaded.scene.lights.size(),
@@ -259,33 +304,63 @@ int run_render(const RenderArguments& arguments) {
     }
     options.width = loaded.width;
     options.height = loaded.height;
+    phase_ends("load");
     Device device =
         Device::open(arguments.scene.device, arguments.scene.threads, arguments.scene.lanes);
     device.help(compilers);
-    const auto build_start = Clock::now();
+    phase_ends("device");
     const WideBvh bvh = build_bvh(loaded, device, arguments.quiet);
-    const double build_seconds = seconds_since(build_start);
+    phase_ends("build");
     if (arguments.seconds > 0) options.deadline = deadline_of(arguments, images, loaded);
+    options.interrupted = [said = false]() mutable {
+        if (pending_signal() != 0 && !std::exchange(said, true))
+            warn("interrupted: the image so far will be written; once more ends at once");
+        return pending_signal() != 0;
+    };
     Frame frame(device, loaded.scene, bvh, loaded.camera, options);
     if (!arguments.quiet) print_plan(loaded, frame.plan(), device.info());
     frame.prepare();
-    FrameResult result = render_frame(frame, arguments);
+    const KeptSignals kept;
+    const FrameResult result = render_frame(frame, arguments, checkpoint);
+    phase_ends("upload");
+    const double inside = device.compile_seconds() + result.prepare_seconds + result.render_seconds;
+    phases.back().second = std::max(phases.back().second - inside, 0.0);
+    phases.insert(phases.end(), {{"compile", device.compile_seconds()},
+                                 {"prepare", result.prepare_seconds},
+                                 {"render", result.render_seconds}});
     warn_if_not_finite(result.image);
+    if (result.is_cut_short && pending_signal() != 0) {
+        warn_of_interrupt(options, result);
+        if (result.spp == 0) end_by(pending_signal());
+    } else if (is_black(result.image)) {
+        warn("the image is black: {}", why_black(loaded.scene, loaded.camera, loaded.width,
+                                                 loaded.height, options.hide_emitters));
+        phase_ends("look why");
+    }
 
-    const json parameters = make_parameters(options, loaded, result);
-    json stats = make_stats(parameters, loaded, frame.plan(), result, device);
-    stats["seconds"]["load"] = load_seconds;
-    stats["seconds"]["build"] = build_seconds;
-    stats["seconds"]["total"] = seconds_since(start);
-    if (arguments.top_lights > 0)
+    const OptionList list = options_of(arguments, options, loaded, device, result);
+    json stats = make_stats(list, loaded, frame.plan(), result, device);
+    if (arguments.top_lights > 0 && pending_signal() == 0) {
         stats["top_lights"] =
             report_top_lights(loaded, arguments.top_lights, options.seed, arguments.quiet);
-    write_files(arguments, images, result, stats, make_metadata(parameters, stats));
+        phase_ends("top lights");
+    }
+    write_images(arguments, images, result,
+                 make_metadata(list, result, seconds_since(process_start()), device));
+    phase_ends("write");
+    double total = 0;
+    for (const auto& [name, seconds] : phases) {
+        stats["seconds"][name] = seconds;
+        total += seconds;
+    }
+    stats["seconds"]["total"] = total;
+    write_stats(arguments.stats, stats);
     if (!arguments.quiet) {
-        print_summary(options, result, seconds_since(start));
+        print_summary(options, result, phases);
         for (const auto& [option, path] : files_of(arguments, images))
             if (fs::exists(path)) say("wrote {}\n", path);
     }
+    if (pending_signal() != 0) end_by(pending_signal());
     return 0;
 }
 

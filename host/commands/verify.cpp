@@ -172,11 +172,11 @@ void check_json(const VerifyArguments& arguments) {
 // What shows a file, or how it is read.
 void refuse_without_file(const SceneArguments& scene) {
     if (!scene.camera.empty() || !scene.variant.empty() || scene.emitter_points || scene.seconds ||
-        scene.lamp_scale != 1 || scene.cull_back_faces || scene.shift != std::pair(0.0, 0.0))
+        scene.lamp_scale != 1 || scene.cull_back_faces || scene.shift != std::pair(0.0, 0.0) ||
+        scene.storage != MeshStorage::automatic)
         throw InputError(
-            "verify: --camera, --variant, --emitter-points, --at, --lamp-scale, --cull-back-faces "
-            "and --shift "
-            "go with a file");
+            "verify: --camera, --variant, --emitter-points, --at, --lamp-scale, --cull-back-faces, "
+            "--shift and --instances go with a file");
 }
 
 }  // namespace

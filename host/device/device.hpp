@@ -53,9 +53,10 @@ struct DeviceForm {
 /// Every OpenCL device of every platform, in the loader's order.
 [[nodiscard]] std::vector<DeviceInfo> list_devices();
 
-/// The position in list_devices() that `selector` means: a number, or part of the name or version
-/// of its platform, or else of its own name, in any case; empty: a GPU if there is one, otherwise
-/// PoCL, otherwise the first. Throws InputError if that is no usable device or more than one.
+/// The position in list_devices() that `selector` means: a number, its whole name, or part of the
+/// name or version of its platform, or else of its own name, in any case; empty: a GPU if there is
+/// one, otherwise PoCL, otherwise the first. Throws InputError if that is no usable device or more
+/// than one.
 [[nodiscard]] std::size_t select_device(std::string_view selector);
 
 /// Bytes on a device; copies share them. Freed with the last copy.

@@ -80,8 +80,11 @@ bool contains(const std::string& text, std::string_view part) {
     return lower(text).find(lower(std::string(part))) != std::string::npos;
 }
 
-// The devices whose platform or version, or else whose name, holds the words.
+// The device of that name, or those whose platform or version, or else whose name, holds the words.
 std::vector<std::size_t> matching(const std::vector<DeviceInfo>& devices, std::string_view words) {
+    const auto named = std::ranges::find(devices, words, &DeviceInfo::name);
+    if (named != devices.end() && std::ranges::count(devices, words, &DeviceInfo::name) == 1)
+        return {static_cast<std::size_t>(named - devices.begin())};
     std::vector<std::size_t> by_platform;
     std::vector<std::size_t> by_name;
     for (std::size_t i = 0; i < devices.size(); ++i) {

@@ -92,7 +92,8 @@ void write_png(const std::string& path, const Image& image, float scale, const M
     OIIO::ImageSpec spec(static_cast<int>(image.width), static_cast<int>(image.height), 3,
                          OIIO::TypeDesc::UINT8);
     spec.attribute("oiio:ColorSpace", "sRGB");
-    set_metadata(spec, metadata);
+    for (const auto& [name, value] : metadata)
+        spec.attribute(name, std::visit([](const auto& v) { return fmt::format("{}", v); }, value));
     std::vector<unsigned char> pixels(image.pixel_count() * 3);
     for (std::size_t i = 0; i < image.pixel_count(); ++i)
         for (std::size_t c = 0; c < 3; ++c) {
@@ -157,6 +158,18 @@ std::string data_uri(const PackedImage& packed) {
         encode("planes.png", spec, OIIO::TypeDesc::UINT8, packed.planes.data());
     return "data:image/png;base64," +
            OIIO::Strutil::base64_encode({reinterpret_cast<const char*>(png.data()), png.size()});
+}
+
+std::map<std::string, std::string> read_facts(const std::string& path) {
+    const std::unique_ptr<OIIO::ImageInput> in = OIIO::ImageInput::open(path);
+    if (!in) throw InputError("{}: cannot be read: {}", path, one_line(OIIO::geterror()));
+    constexpr std::string_view prefix = "manylight:";
+    std::map<std::string, std::string> facts;
+    for (const OIIO::ParamValue& attribute : in->spec().extra_attribs) {
+        const std::string name = attribute.name().string();
+        if (name.starts_with(prefix)) facts[name.substr(prefix.size())] = attribute.get_string();
+    }
+    return facts;
 }
 
 Image read_rgb(const std::string& path) {

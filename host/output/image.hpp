@@ -40,7 +40,8 @@ using Metadata = std::map<std::string, std::variant<int, float, std::string>>;
 /// RuntimeError.
 void write_exr(const std::string& path, const std::vector<Image>& layers, const Metadata& metadata);
 
-/// Writes the first three channels, times `scale`, as an 8-bit sRGB PNG, in the same way.
+/// Writes the first three channels, times `scale`, as an 8-bit sRGB PNG, in the same way; all facts
+/// as text.
 void write_png(const std::string& path, const Image& image, float scale, const Metadata& metadata);
 
 /// An image in 5 bytes per pixel, planes one after another: [plane * pixels + y * width + x].
@@ -68,6 +69,10 @@ struct PackedImage {
 /// The channels R, G, B of an image file, linear: integers are taken for sRGB codes. Throws
 /// InputError.
 [[nodiscard]] Image read_rgb(const std::string& path);
+
+/// The facts of an image file's header whose names start with "manylight:", without that, as text.
+/// Throws InputError.
+[[nodiscard]] std::map<std::string, std::string> read_facts(const std::string& path);
 
 /// Any channels of an image file, by name, likewise; and of `texts`, names of header facts, the
 /// values, empty where there are none.

@@ -19,27 +19,36 @@ std::string duration(double seconds) {
 
 }  // namespace
 
-Progress::Progress(std::string title, bool quiet)
+Progress::Progress(std::string title, bool quiet, std::chrono::milliseconds interval)
     : title_(std::move(title)),
-      shown_(!quiet && isatty(STDERR_FILENO)),
+      quiet_(quiet),
+      is_bar_(isatty(STDERR_FILENO) != 0),
+      interval_(is_bar_ ? std::chrono::milliseconds(100) : interval),
       start_(std::chrono::steady_clock::now()),
       drawn_(start_) {}
 
 Progress::~Progress() {
-    if (shown_) fmt::print(stderr, "\r\033[K");
+    if (!quiet_ && is_bar_) fmt::print(stderr, "\r\033[K");
 }
 
 void Progress::set(double share) {
     share_ = std::clamp(from_ + share * (to_ - from_), share_, 1.0);
     const auto now = std::chrono::steady_clock::now();
-    if (!shown_ || now - drawn_ < std::chrono::milliseconds(100)) return;
+    if (quiet_ || now - drawn_ < interval_) return;
     drawn_ = now;
     const double elapsed = std::chrono::duration<double>(now - start_).count();
-    constexpr int width = 30;
-    const int filled = static_cast<int>(share_ * width);
-    fmt::print(stderr, "\r{} [{:#<{}}{:.<{}}] {:3.0f}%, {} left\033[K", title_, "", filled, "",
-               width - filled, 100 * share_,
-               share_ > 0 ? duration(elapsed * (1 - share_) / share_) : "?");
+    const std::string text =
+        fmt::format("{:3.0f}%, {} left", 100 * share_,
+                    share_ > 0 ? duration(elapsed * (1 - share_) / share_) : "?");
+    if (is_bar_) {
+        constexpr int width = 30;
+        const int filled = static_cast<int>(share_ * width);
+        fmt::print(stderr, "\r{} [{:#<{}}{:.<{}}] {}\033[K", title_, "", filled, "", width - filled,
+                   text);
+    } else {
+        fmt::print(stderr, "{} {}\n", title_, text);
+        interval_ = std::min<std::chrono::milliseconds>(2 * interval_, std::chrono::minutes(1));
+    }
     std::fflush(stderr);
 }
 

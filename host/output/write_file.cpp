@@ -12,6 +12,7 @@
 #include <filesystem>
 
 #include "error.hpp"
+#include "signals.hpp"
 
 namespace manylight {
 namespace {
@@ -19,26 +20,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t longest_stem = 200;  // bytes of a part's name: a name has 255 at most
-
-// The file that is being written aside, for signals: a process that ends by one leaves none.
-char part_name[4096];
-volatile std::sig_atomic_t has_part = 0;
-
-void remove_part(int signal_number) {
-    if (has_part != 0) unlink(part_name);
-    std::signal(signal_number, SIG_DFL);
-    std::raise(signal_number);
-}
-
-void handle_signals() {
-    static const bool once = [] {
-        for (const int number : {SIGINT, SIGTERM, SIGHUP})
-            if (std::signal(number, remove_part) == SIG_IGN) std::signal(number, SIG_IGN);
-        std::signal(SIGXFSZ, SIG_IGN);  // a file too large is an error as any other
-        return true;
-    }();
-    (void)once;
-}
 
 // errno of what failed, or 0.
 int write_all(int file, std::span<const std::byte> bytes) {
@@ -88,7 +69,7 @@ void write_file(const std::string& path, std::span<const std::byte> bytes) {
     std::error_code error;
     const fs::path target =
         fs::is_symlink(path, error) ? fs::weakly_canonical(path, error) : fs::path(path);
-    handle_signals();
+    std::signal(SIGXFSZ, SIG_IGN);  // a file too large is an error as any other
     fs::path aside;
     int file = -1;
     // A process that was killed may have left its file, and this one may have its number.
@@ -96,19 +77,14 @@ void write_file(const std::string& path, std::span<const std::byte> bytes) {
         aside = target.parent_path() /
                 fmt::format(".{}.{}-{}.part", target.filename().string().substr(0, longest_stem),
                             getpid(), i);
-        has_part = 0;
-        std::strncpy(part_name, aside.c_str(), sizeof(part_name) - 1);
         file = open(aside.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-        has_part = file >= 0 && aside.native().size() < sizeof(part_name) ? 1 : 0;
     }
-    if (file < 0) {
-        has_part = 0;
-        throw RuntimeError("{}: cannot be written: {}", path, std::strerror(errno));
-    }
+    if (file < 0) throw RuntimeError("{}: cannot be written: {}", path, std::strerror(errno));
+    remove_at_signal(aside.c_str());
     int problem = write_all(file, bytes);
     if (close(file) != 0 && problem == 0) problem = errno;
     if (problem == 0 && std::rename(aside.c_str(), target.c_str()) != 0) problem = errno;
-    has_part = 0;
+    remove_at_signal(nullptr);
     if (problem == 0) return;
     unlink(aside.c_str());
     throw RuntimeError("{}: cannot be written: {}", path, std::strerror(problem));

@@ -12,7 +12,7 @@
 namespace manylight {
 namespace {
 
-constexpr std::string_view magic = "manylight checkpoint 1\n";
+constexpr std::string_view magic = "manylight checkpoint 2\n";
 
 void append(std::vector<std::byte>& out, std::span<const std::byte> bytes) {
     const std::uint64_t size = bytes.size();
@@ -44,7 +44,7 @@ std::string take_text(std::span<const std::byte>& rest) {
     return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
-FrameState parse(std::span<const std::byte> bytes, const std::string& render) {
+Checkpoint parse(std::span<const std::byte> bytes) {
     constexpr std::size_t hash_size = 16;
     if (bytes.size() < magic.size() + hash_size ||
         std::memcmp(bytes.data(), magic.data(), magic.size()) != 0)
@@ -53,15 +53,13 @@ FrameState parse(std::span<const std::byte> bytes, const std::string& render) {
     if (std::memcmp(hash_of(content).data(), bytes.data() + content.size(), hash_size) != 0)
         throw InputError("is damaged: its hash does not fit its content");
     auto rest = content.subspan(magic.size());
-    if (take_text(rest) != render)
-        throw InputError("is of another render: the scene, the options or the device differ");
-    FrameState state;
+    Checkpoint out{take_text(rest), {}};
     while (!rest.empty()) {
         const std::string name = take_text(rest);
         const auto values = take(rest);
-        state.sections()[name].assign(values.begin(), values.end());
+        out.state.sections()[name].assign(values.begin(), values.end());
     }
-    return state;
+    return out;
 }
 
 }  // namespace
@@ -80,14 +78,14 @@ void write_checkpoint(const std::string& path, const std::string& render, const 
     write_file(path, out);
 }
 
-FrameState read_checkpoint(const std::string& path, const std::string& render) {
+Checkpoint read_checkpoint(const std::string& path) {
     std::ifstream file(path, std::ios::binary);
     if (!file) throw InputError("--resume: {}: cannot be read: {}", path, std::strerror(errno));
     std::stringstream all;
     all << file.rdbuf();
     const std::string text = std::move(all).str();
     try {
-        return parse(std::as_bytes(std::span(text)), render);
+        return parse(std::as_bytes(std::span(text)));
     } catch (const InputError& error) {
         throw InputError("--resume: {}: {}", path, error.what());
     }

@@ -69,7 +69,12 @@ struct Saving {
 /// everything that the image depends on.
 void write_checkpoint(const std::string& path, const std::string& render, const FrameState& state);
 
-/// Throws InputError naming the file where it is not a whole checkpoint of `render`.
-[[nodiscard]] FrameState read_checkpoint(const std::string& path, const std::string& render);
+struct Checkpoint {
+    std::string render;
+    FrameState state;
+};
+
+/// Throws InputError naming the file where it is not a whole checkpoint.
+[[nodiscard]] Checkpoint read_checkpoint(const std::string& path);
 
 }  // namespace manylight

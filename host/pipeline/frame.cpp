@@ -9,6 +9,7 @@
 #include "output/hash.hpp"
 #include "pipeline/adaptive.hpp"
 #include "pipeline/aov.hpp"
+#include "pipeline/image_options.hpp"
 #include "stages/accumulate.hpp"
 #include "stages/reflections.hpp"
 #include "stages/samples.hpp"
@@ -83,7 +84,8 @@ uint Frame::samples_of(uint i) const {
 
 // Pixel samples count by their light samples.
 float Frame::weight_of(uint i) const {
-    return static_cast<float>(samples_of(i)) / static_cast<float>(std::max(samples_of(0), 1u));
+    return static_cast<float>(std::max(samples_of(i), 1u)) /
+           static_cast<float>(std::max(samples_of(0), 1u));
 }
 
 // Positions in the pixel, and reflections, are stratified over samples. What the error is estimated
@@ -153,10 +155,13 @@ FrameResult Frame::render(Progress& progress, const Saving& saving, const FrameS
         render_to_error(progress);
     else
         visit_all(options_.spp, 0, 1, progress);
+    if (std::ranges::any_of(done_, [&](uint samples) { return samples != done_[0]; }))
+        result_.is_cut_short = true;
     if (options_.estimates_error()) {
         if (!result_.error) result_.error = estimate_error();
+        if (result_.empty_pixels > 0) result_.error.reset();
         for (auto& [name, layer] : result_.aovs)
-            if (name == "error") layer = result_.error->pixels;
+            if (name == "error" && result_.error) layer = result_.error->pixels;
     } else {
         Stopwatch watch(result_.render_seconds, device_);
         keep_image();
@@ -176,6 +181,7 @@ void Frame::render_to_error(Progress& progress) {
         result_.error = estimate_error();
         const double error = result_.error->relmse;
         const bool late = options_.deadline && Clock::now() >= *options_.deadline;
+        if (result_.is_cut_short && is_interrupted()) return;
         if (error <= options_.target_error || end >= options_.spp || late) {
             if (saving_.save && end < options_.spp) save(plan_.batches - 1, end);
             return;
@@ -200,6 +206,10 @@ void Frame::render_to_error(Progress& progress) {
 void Frame::visit_all(uint end, double shown, double share, Progress& progress) {
     const Tiles all = all_tiles(options_.width, options_.height, options_.tile_size());
     for (unsigned i = 0; i < plan_.batches; ++i) {
+        if (is_interrupted()) {
+            result_.is_cut_short = true;
+            return;
+        }
         Visit visit;
         visit.batch = all;
         visit.number = i;
@@ -295,6 +305,10 @@ void Frame::sample(const Visit& visit, Progress& progress) {
     double seconds_per_sample = 0;  // of a light sample of all pixels
     const uint first = done_[visit.number];
     for (uint i = first; i < visit.end; ++i) {
+        if (is_interrupted()) {
+            result_.is_cut_short = true;
+            break;
+        }
         const uint count = samples_of(i);
         const auto begun = Clock::now();
         const auto seconds_left = [&] {
@@ -303,7 +317,10 @@ void Frame::sample(const Visit& visit, Progress& progress) {
         // One sample is taken whatever the time.
         const bool may_stop = visit.deadline.has_value() && i > 0;
         const double expected = s.adaptive ? 0 : seconds_per_sample * count;
-        if (may_stop && seconds_left() < expected / 2) break;
+        if (may_stop && seconds_left() < expected / 2) {
+            result_.is_cut_short = true;
+            break;
+        }
         const PixelSample sample{i, options_.seed, options_.jitters()};
         const bool alike = !options_.jitters() && !passes_by_chance(scene_);
         const bool at_hand = alike && (i > first || plan_.centres);
@@ -317,22 +334,27 @@ void Frame::sample(const Visit& visit, Progress& progress) {
             device_.finish();
             work += static_cast<double>(samples);
             report(progress, visit, work);
+            return !is_interrupted() || saving_.save;  // a state is one between pixel samples
         };
         done_[visit.number] = i + 1;
+        bool complete = true;
         if (s.adaptive && count > 0) {
             if (i == first && visit.state != nullptr)
                 s.adaptive->resume(batch, *visit.state);
             else if (i == first && visit.fresh)
                 s.adaptive->start(batch, s.surfaces, options_.seed);
-            bool complete = true;
             s.adaptive->draw(batch, sample, count, s.surfaces, s.estimates, [&](const Pass& pass) {
                 if (!s.reflections) add(pass);
-                progress_by(pass_pixels(pass) * count);
-                return complete = !may_stop || seconds_left() > 0;
+                complete = progress_by(pass_pixels(pass) * count);
+                return complete = complete && (!may_stop || seconds_left() > 0);
             });
-            if (!complete) continue;
         } else if (s.samples) {
-            s.samples->draw(batch, sample, count, s.surfaces, s.tables, s.estimates, progress_by);
+            complete = s.samples->draw(batch, sample, count, s.surfaces, s.tables, s.estimates,
+                                       progress_by);
+        }
+        if (!complete) {
+            result_.is_cut_short = true;
+            continue;
         }
         if (s.reflections)
             s.reflections->add(batch, position_of(sample), s.surfaces, s.estimates.sums);
@@ -341,7 +363,8 @@ void Frame::sample(const Visit& visit, Progress& progress) {
         seconds_per_sample = seconds_since(begun) / std::max(count, 1u);
         const bool is_last = i + 1 == options_.spp && visit.number + 1 == plan_.batches;
         state_ = nullptr;
-        if (saving_.save && (is_last || seconds_since(saved_) > saving_.seconds))
+        if (saving_.save &&
+            (is_last || is_interrupted() || seconds_since(saved_) > saving_.seconds))
             save(visit.number, visit.end);
     }
 }
@@ -350,15 +373,14 @@ std::string Frame::name() const {
     ContentHash hash;
     const RenderOptions& o = options_;
     hash.add(scene_).add(std::as_bytes(std::span(&camera_, 1)));
-    hash.add(o.width).add(o.height).add(o.seed).add(o.light_samples).add(o.target_error);
-    hash.add(o.jitters()).add(o.hide_emitters).add(o.reflections).add(o.estimates_error());
-    hash.add(o.clusters.tile_size).add(o.clusters.max_depth).add(o.clusters.normal_threshold);
-    hash.add(o.clusters.shadow.threshold).add(plan_.tiles_per_batch);
-    hash.add(device_.info().name).add(device_.info().platform);
-    if (plan_.batches > 1) hash.add(o.spp);  // of batches that are done, nothing is kept to go on
+    for (const auto& [option, value] : image_options(o)) hash.add(option).add(value.dump());
+    hash.add(o.jitters()).add(plan_.tiles_per_batch);
+    hash.add(device_.info().name).add(device_.info().platform).add(device_.form().lanes);
     for (const auto& [file, text] : kernel_sources) hash.add(text);
     return std::string(o.sampler) + " " + hash.add(MANYLIGHT_VERSION).name();
 }
+
+bool Frame::is_interrupted() const { return options_.interrupted && options_.interrupted(); }
 
 // Between two pixel samples of a batch that is on the way to `end` of them.
 void Frame::save(unsigned batch, uint end) {
@@ -366,6 +388,7 @@ void Frame::save(unsigned batch, uint end) {
     Stages& s = *stages_;
     state.put("batch", uint{batch});
     state.put("end", end);
+    state.put("spp", options_.planned_spp());
     state.put("done", std::span<const uint>(done_));
     state.put("cluster_rays", std::uint64_t{cluster_rays_});
     state.put("primary_rays", std::uint64_t{result_.primary_rays});
@@ -383,6 +406,15 @@ void Frame::save(unsigned batch, uint end) {
 
 void Frame::resume(const FrameState& state) {
     Stages& s = *stages_;
+    const auto spp = state.get<uint>("spp");
+    if (plan_.batches > 1) {  // of those that are done, nothing is kept to go on
+        if (options_.spp > spp)
+            throw InputError(
+                "--spp {}: the checkpoint's image is made in {} batches, of {} pixel samples each: "
+                "it can have fewer, not more",
+                options_.spp, plan_.batches, spp);
+        if (options_.spp < spp) saving_.save = nullptr;
+    }
     state_ = &state;
     resumed_end_ = state.get<uint>("end");
     done_ = state.get<uint>("done", plan_.batches);
@@ -413,6 +445,7 @@ void Frame::keep_image() {
     const std::vector<float> weights = stages_->image.weights.download();
     double rays = 0;
     double samples = 0;
+    result_.empty_pixels = static_cast<std::size_t>(std::ranges::count(weights, 0.f));
     const auto first_weight = static_cast<float>(RenderOptions::first_samples);
     const float later_weight = weight_of(RenderOptions::first_samples);
     for (std::size_t i = 0; i < sums.size(); ++i) {

@@ -26,7 +26,10 @@ struct FrameResult {
     std::size_t shadow_rays = 0;
     uint light_samples = 0;              // of the first pixel sample
     uint later_light_samples = 0;        // of the last one
-    double spp = 0;                      // pixel samples, on average where time ended
+    double spp = 0;                      // pixel samples, on average where they were cut short
+    std::size_t empty_pixels = 0;        // without one
+    bool is_cut_short = false;           // some pixels have fewer samples than others, or all
+                                         // have fewer than was asked for: by time, an interrupt
     std::optional<ErrorEstimate> error;  // where it was asked for
     double prepare_seconds = 0;          // clusters, contributions, PDFs; compiling apart
     double render_seconds = 0;           // the rest, likewise
@@ -45,11 +48,11 @@ class Frame {
     void prepare();
 
     /// To be called once, after prepare(). Goes on with `state` where one is given, saved by a
-    /// frame of the same arguments but for spp.
+    /// frame of the same name(). Throws InputError for more spp than it can go on to.
     [[nodiscard]] FrameResult render(Progress& progress, const Saving& saving = {},
                                      const FrameState* state = nullptr);
 
-    /// Names what is rendered, with everything that a pixel sample depends on.
+    /// Names what is rendered, with everything that a pixel sample depends on but their number.
     [[nodiscard]] std::string name() const;
 
     /// The lights' tree, where the sampler uses one; after prepare().
@@ -83,6 +86,7 @@ class Frame {
     void cluster(const Visit& visit, Progress& progress);
     void keep_aovs(const Tiles& batch);
     void sample(const Visit& visit, Progress& progress);
+    [[nodiscard]] bool is_interrupted() const;
     void save(unsigned batch, uint end);
     void resume(const FrameState& state);
     [[nodiscard]] ErrorEstimate estimate_error();

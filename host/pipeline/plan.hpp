@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <algorithm>
+#include <functional>
 #include <optional>
 
 #include "bvh/wide.hpp"
@@ -13,8 +15,10 @@ struct RenderOptions {
     std::string sampler = "adaptive";
     uint light_samples = 0;   // per pixel sample, see samples_of(); exhaustive takes all lights
     uint spp = 4;             // pixel samples, at most
+    uint begun_spp = 0;       // likewise, of the render that this one goes on with, if any
     double target_error = 0;  // stop at this relMSE; 0: at spp
     std::optional<Clock::time_point> deadline;  // stop by then, but for one sample of each pixel
+    std::function<bool()> interrupted;          // stop as soon as may be, once it returns true
     uint seed = 0;
     unsigned width = 512;
     unsigned height = 512;
@@ -32,7 +36,9 @@ struct RenderOptions {
     [[nodiscard]] uint samples_of(uint i) const {
         return light_samples > 0 ? light_samples : (i < first_samples ? 4u : 16u);
     }
-    [[nodiscard]] uint most_samples() const { return samples_of(spp - 1); }
+    [[nodiscard]] uint most_samples() const { return samples_of(planned_spp() - 1); }
+
+    [[nodiscard]] uint planned_spp() const { return std::max(spp, begun_spp); }
 
     /// Whether the error is estimated from pairs of pixel samples.
     [[nodiscard]] bool estimates_error() const;
@@ -41,7 +47,7 @@ struct RenderOptions {
     [[nodiscard]] unsigned tile_size() const;
 
     /// Whether pixel samples lie at random in their pixels.
-    [[nodiscard]] bool jitters() const { return spp > 1 && !pixel_centre; }
+    [[nodiscard]] bool jitters() const { return planned_spp() > 1 && !pixel_centre; }
 };
 
 /// What a frame will take on the device, bytes.

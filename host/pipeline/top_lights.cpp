@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "pipeline/top_lights.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numeric>
 #include <optional>
 #include <unordered_map>
@@ -20,12 +23,12 @@ constexpr unsigned samples = 16;
 constexpr uint dimension = 0xfffffff0u;  // of random numbers, apart from those of the samplers
 
 // A point of each of a grid of equal rectangles, as square as may be.
-std::vector<glm::dvec2> stratified_points(unsigned width, unsigned height, uint seed) {
-    const double scale = std::sqrt(
-        std::min(1.0, most_points / (static_cast<double>(width) * static_cast<double>(height))));
+std::vector<glm::dvec2> stratified_points(unsigned width, unsigned height, unsigned most,
+                                          uint seed) {
+    const double scale =
+        std::sqrt(std::min(1.0, most / (static_cast<double>(width) * static_cast<double>(height))));
     const auto columns = std::max(1u, static_cast<unsigned>(width * scale));
-    const auto rows =
-        std::max(1u, std::min(static_cast<unsigned>(height * scale), most_points / columns));
+    const auto rows = std::max(1u, std::min(static_cast<unsigned>(height * scale), most / columns));
     std::vector<glm::dvec2> points;
     for (unsigned y = 0; y < rows; ++y)
         for (unsigned x = 0; x < columns; ++x) {
@@ -39,13 +42,14 @@ std::vector<glm::dvec2> stratified_points(unsigned width, unsigned height, uint 
 // What lights give at the image's points.
 class Points {
   public:
-    Points(const Scene& scene, const Camera& camera, unsigned width, unsigned height, uint seed)
+    Points(const Scene& scene, const Camera& camera, unsigned width, unsigned height, uint seed,
+           unsigned most = most_points)
         : scene_(scene.varies_materials() ? varied_.emplace(scene) : scene),
           camera_(camera),
           tracer_(scene_),
           seed_(seed) {
         const Tiles tiles = all_tiles(width, height, 32);
-        for (const glm::dvec2& at : stratified_points(width, height, seed)) {
+        for (const glm::dvec2& at : stratified_points(width, height, most, seed)) {
             const reference::Ray ray = reference::primary_ray(camera, tiles, at);
             const auto hit = tracer_.closest_hit(ray);
             surfaces_.push_back(reference::surface_at(scene_, ray, hit));
@@ -70,6 +74,28 @@ class Points {
         if (term.value == glm::dvec3(0)) return 0;
         ++rays_;
         return tracer_.occluded(term.shadow) ? 0 : reference::luminance(term.value);
+    }
+
+    // The segment from point p to a light's middle, if its light falls on that side of a white
+    // surface: the one that is seen, or the other.
+    [[nodiscard]] std::optional<reference::Ray> way(std::size_t p, std::size_t light,
+                                                    bool behind) const {
+        Surface s = surfaces_[p];
+        if (behind) {
+            s.normal = -s.normal;
+            s.geometric = {-glm::vec3(s.geometric), s.geometric.w};
+        }
+        Material white{};
+        white.base_color = {1, 1, 1, 0};
+        white.roughness = 1;
+        const reference::Unshadowed term =
+            reference::unshadowed(s, white, camera_, scene_.lights[light], glm::dvec2(0.4));
+        if (term.value == glm::dvec3(0)) return {};
+        return term.shadow;
+    }
+
+    [[nodiscard]] std::optional<reference::Hit> blocker(const reference::Ray& way) const {
+        return tracer_.closest_hit(way);
     }
 
     // With the points' own materials.
@@ -173,6 +199,57 @@ TopLights find_top_lights(const Scene& scene, const Camera& camera, unsigned wid
     std::ranges::stable_sort(out.lights, std::greater(), &TopLight::share);
     if (out.lights.size() > count) out.lights.resize(count);
     return out;
+}
+
+std::string why_black(const Scene& scene, const Camera& camera, unsigned width, unsigned height,
+                      bool hides_emitters) {
+    if (scene.seen_triangle_count() == 0) return "the scene has no triangles";
+    constexpr unsigned looked_at = 256;
+    constexpr std::size_t lights_asked = 64;
+    Points points(scene, camera, width, height, 0, looked_at);
+    std::vector<std::size_t> hits;
+    for (std::size_t p = 0; p < points.size(); ++p)
+        if (points.surface(p).position.w >= 0) hits.push_back(p);
+    if (hits.empty()) return "no geometry is in view: the camera looks past all of it";
+    const auto shines = [&](std::size_t p) {
+        const Material& material = points.scene().materials[points.surface(p).shading];
+        return glm::vec3(material.emission) != glm::vec3(0);
+    };
+    if (hides_emitters && std::ranges::all_of(hits, shines))
+        return "all that is in view shines, and --hide-emitters shows that black";
+    if (scene.lights.empty()) return "the scene has no lights, and nothing in view shines";
+    std::size_t lit = 0, free = 0, blocked = 0, behind = 0;
+    std::map<std::string, std::size_t> blockers;
+    const std::size_t step = (scene.lights.size() + lights_asked - 1) / lights_asked;
+    for (const std::size_t p : hits)
+        for (std::size_t light = 0; light < scene.lights.size(); light += step) {
+            const auto way = points.way(p, light, false);
+            if (!way) {
+                behind += points.way(p, light, true) ? 1 : 0;
+                continue;
+            }
+            const auto hit = points.blocker(*way);
+            (hit ? blocked : free) += 1;
+            if (hit && hit->triangle < scene.triangle_count())
+                ++blockers[scene.material_names[scene.triangle_materials[hit->triangle]]];
+            lit += points.luminance(p, light, glm::dvec2(0.4)) > 0 ? 1 : 0;
+        }
+    if (lit > 0)
+        return "light does reach what is in view, but no sample found it: take more, or another "
+               "--sampler";
+    if (free > 0) return "light reaches what is in view, which reflects none: it is black";
+    if (blocked == 0 && behind == 0)
+        return "no light reaches what is in view: lights are out of range, outside their cones, or "
+               "shine the other way";
+    if (behind > blocked)
+        return "all lights are behind the surfaces in view, of which the dark side is seen, as "
+               "from below a floor";
+    const auto most =
+        std::ranges::max_element(blockers, {}, [](const auto& blocker) { return blocker.second; });
+    return fmt::format("other surfaces block all light on its way to what is in view{}",
+                       most == blockers.end() || most->first.empty()
+                           ? ""
+                           : fmt::format(", most of it those of material '{}'", most->first));
 }
 
 }  // namespace manylight

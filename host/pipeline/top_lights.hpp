@@ -2,6 +2,7 @@
 // Which lights make an image: an estimate that does not depend on the sampler that rendered it.
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "scene/scene.hpp"
@@ -32,5 +33,10 @@ struct TopLights {
 /// too large rather than too small.
 [[nodiscard]] TopLights find_top_lights(const Scene& scene, const Camera& camera, unsigned width,
                                         unsigned height, unsigned count, unsigned seed);
+
+/// The likely reason why an image is black, by the scalar reference at some of its points: "no
+/// geometry is in view". `hides_emitters`: see RenderOptions.
+[[nodiscard]] std::string why_black(const Scene& scene, const Camera& camera, unsigned width,
+                                    unsigned height, bool hides_emitters);
 
 }  // namespace manylight

@@ -76,13 +76,13 @@ SamplerChoice choose_sampler(std::size_t lights, uint light_samples, bool cluste
     return {"adaptive", fmt::format("{} lights, by cuts of the light tree", lights)};
 }
 
-const Sampler& find_sampler(std::string_view name) {
+const Sampler& find_sampler(std::string_view name, std::string_view option) {
     std::string names;
     for (const Sampler& sampler : samplers) {
         if (sampler.name == name) return sampler;
         names += fmt::format("{}{}", names.empty() ? "" : ", ", sampler.name);
     }
-    throw InputError("--sampler {}: no such sampler (there are: {})", name, names);
+    throw InputError("{} {}: no such sampler (there are: {})", option, name, names);
 }
 
 }  // namespace manylight

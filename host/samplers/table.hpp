@@ -56,7 +56,8 @@ struct SamplerChoice {
 [[nodiscard]] SamplerChoice choose_sampler(std::size_t lights, uint light_samples,
                                            bool clusters_wanted);
 
-/// Throws InputError for a name that is not in the table.
-[[nodiscard]] const Sampler& find_sampler(std::string_view name);
+/// Throws InputError for a name, given by `option`, that is not in the table.
+[[nodiscard]] const Sampler& find_sampler(std::string_view name,
+                                          std::string_view option = "--sampler");
 
 }  // namespace manylight

@@ -63,4 +63,10 @@ Extension extension_kind(const std::string& name) {
     return Extension::unknown;
 }
 
+bool lets_light_through(const std::string& name) {
+    return name == "KHR_materials_transmission" || name == "KHR_materials_volume" ||
+           name == "KHR_materials_diffuse_transmission" ||
+           name == "ADOBE_materials_thin_transparency";
+}
+
 }  // namespace manylight

@@ -15,4 +15,7 @@ enum class Extension {
 
 [[nodiscard]] Extension extension_kind(const std::string& name);
 
+/// Whether light goes through surfaces of that extension, as through glass.
+[[nodiscard]] bool lets_light_through(const std::string& name);
+
 }  // namespace manylight

@@ -786,8 +786,11 @@ class Loader {
         for (const std::string& name : names) {
             const Extension kind = extension_kind(name);
             if (kind != Extension::rendered && kind != Extension::silent)
-                scene_.warnings.push_back(
-                    fmt::format("{}: extension {} is not rendered", scene_.file, name));
+                scene_.warnings.push_back(fmt::format(
+                    "{}: extension {} is not rendered{}", scene_.file, name,
+                    lets_light_through(name)
+                        ? ": its surfaces are opaque, and block the light of lamps behind them"
+                        : ""));
         }
     }
 

@@ -11,9 +11,9 @@ SampleStage::SampleStage(Device& device, const DeviceScene& scene, std::string_v
       add_(device.kernel("samples.cl", "samples_add", scene.traversal, "samples")),
       values_(device.allocate<float>(48 * items)) {}
 
-void SampleStage::draw(const Tiles& tiles, const PixelSample& sample, uint light_samples,
+bool SampleStage::draw(const Tiles& tiles, const PixelSample& sample, uint light_samples,
                        const Buffer<Surface>& surfaces, const Arguments& tables,
-                       Estimates& estimates, const std::function<void(std::size_t)>& progress) {
+                       Estimates& estimates, const std::function<bool(std::size_t)>& progress) {
     const std::size_t items = item_count(tiles);
     Arguments arguments = scene_;
     arguments.set(tables)
@@ -32,8 +32,10 @@ void SampleStage::draw(const Tiles& tiles, const PixelSample& sample, uint light
         draw_.launch(items, arguments);
         shadows_.trace(items, sample.salt());
         add_.launch(items, arguments);
-        progress(items * (end - first));
+        const bool goes_on = progress(items * (end - first));
+        if (!goes_on && end < light_samples) return false;
     }
+    return true;
 }
 
 }  // namespace manylight

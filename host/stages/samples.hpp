@@ -24,10 +24,11 @@ class SampleStage {
     SampleStage(Device& device, const DeviceScene& scene, std::string_view file, std::size_t items);
 
     /// Fills the estimates of `tiles`. `tables` names the buffers that the sampler needs.
-    /// `progress` is called with the light samples done, over all items, after each launch.
-    void draw(const Tiles& tiles, const PixelSample& sample, uint light_samples,
+    /// `progress` is called with the light samples done, over all items, after each launch, and
+    /// says whether to go on. Returns false where that left samples undone.
+    bool draw(const Tiles& tiles, const PixelSample& sample, uint light_samples,
               const Buffer<Surface>& surfaces, const Arguments& tables, Estimates& estimates,
-              const std::function<void(std::size_t)>& progress);
+              const std::function<bool(std::size_t)>& progress);
 
     /// Bytes of an item on the device.
     [[nodiscard]] static constexpr std::size_t item_bytes() {

@@ -48,7 +48,7 @@ std::vector<Check> check_blend(Device device, uint seed) {
             GBufferStage(device, scene).trace(tiles, sample, surfaces);
             Estimates sums{device.allocate<float4>(item_count(tiles)),
                            device.allocate<float4>(item_count(tiles))};
-            draw.draw(tiles, sample, 1, surfaces, {}, sums, [](std::size_t) {});
+            draw.draw(tiles, sample, 1, surfaces, {}, sums, [](std::size_t) { return true; });
             const std::vector<Surface> found = surfaces.download();
             const std::vector<float4> estimates = sums.sums.download();
             for (std::size_t i = 0; i < found.size(); ++i) {

@@ -113,7 +113,7 @@ Check Verifier::samples(const Sampler& sampler) {
                         device_.allocate<float4>(item_count(tiles))};
     const DeviceScene& uploaded = sampler.table == Table::tree ? tree_scene_ : device_scene_;
     SampleStage(device_, uploaded, sampler.kernel_file, item_count(tiles))
-        .draw(tiles, sample, count, surfaces, tables, estimates, [](std::size_t) {});
+        .draw(tiles, sample, count, surfaces, tables, estimates, [](std::size_t) { return true; });
     const std::vector<float4> found = estimates.sums.download();
     const std::size_t pixels = std::max<std::size_t>(options_.most_entries / count, 4);
     const std::size_t stride = pixel_count(tiles) / pixels | 1;
