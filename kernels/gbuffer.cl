@@ -127,8 +127,9 @@ static void write_surface(Tiles tiles, Camera camera, __global Surface* surfaces
     const float3 v0 = point_to_world(in, vload3(corner.x, vertices));
     const float3 v1 = point_to_world(in, vload3(corner.y, vertices));
     const float3 v2 = point_to_world(in, vload3(corner.z, vertices));
-    const float3 face = cross(v1 - v0, v2 - v0);
-    const float2 weights = hit_weights(ray, v0, v1 - v0, v2 - v0);
+    const float3 edge1 = v1 - v0, edge2 = v2 - v0;
+    const float3 face = cross(edge1, edge2);
+    const float2 weights = hit_weights(ray, v0, edge1, edge2);
     const bool front = dot(face, ray.direction) < 0.0f;
     const float3 geometric = normalize(front ? face : -face);
     float3 normal = geometric;
@@ -140,17 +141,24 @@ static void write_surface(Tiles tiles, Camera camera, __global Surface* surfaces
     if (dot(smooth, smooth) > 0.0f)
         normal = normalize(dot(smooth, geometric) < 0.0f ? -smooth : smooth);
 #endif
-    float extent = max(max(largest_part(v0), largest_part(v1)), largest_part(v2));
+    const float3 along1 = edge1 * weights.x, along2 = edge2 * weights.y;
+    float3 position = v0 + along1 + along2;
+    float3 parts = fabs(v0) + fabs(along1) + fabs(along2);
+    // In a triangle that is larger than the view, weights are too coarse to tell where in its plane
+    // the point is; the ray tells.
+    const float3 seen = ray.origin + ray.direction * distance;
+    if (largest_part(fabs(ray.origin) + fabs(ray.direction) * distance) < largest_part(parts))
+        position = seen + geometric * dot(geometric, position - seen);
 #if HAS_INSTANCES
-    if (in) {  // rays are rounded relative to its place, too
+    if (in) {
         const float3 place = place_of(in);
-        extent = max(max(extent, largest_part(v0 - place)),
-                     max(largest_part(v1 - place), largest_part(v2 - place)));
+        const float3 corners = max(max(fabs(v0 - place), fabs(v1 - place)), fabs(v2 - place));
+        parts += multiply_sizes(in->to_world, multiply_sizes(in->to_object, corners));
     }
 #endif
-    surface->position = (float4)(v0 + (v1 - v0) * weights.x + (v2 - v0) * weights.y, distance);
+    surface->position = (float4)(position, distance);
     surface->normal = (float4)(normal, 0.0f);
-    surface->geometric = (float4)(geometric, OFFSET_SCALE * extent);
+    surface->geometric = (float4)(geometric, OFFSET_SCALE * dot(fabs(geometric), parts));
     const uint material = triangle_materials[triangle];
     surface->material = material;
     surface->front = front ? 1u : 0u;
@@ -191,7 +199,7 @@ static void write_surface(Tiles tiles, Camera camera, __global Surface* surfaces
         if (dot(tangent.xyz, tangent.xyz) == 0.0f)
             tangent =
                 tangent_of(map_corners(maps + map + MAP_NORMAL, coordinates, vertex_count, corner),
-                           v1 - v0, v2 - v0);
+                           edge1, edge2);
         normal = map_normal(texel, maps[map + MAP_NORMAL].scale, normal, tangent, front);
         surface->normal = (float4)(normal, 0.0f);
     }

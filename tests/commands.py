@@ -667,6 +667,24 @@ class CommandTest(unittest.TestCase):
         self.assertIn("at (0.00, 1.00, 0.00)", run.stdout)
         self.assertIn("material 'paint'", run.stdout)
 
+    def test_inspect_speaks_of_places_in_the_file(self):
+        self.write_lamp()
+        scene = json.loads((self.folder / "lamp.gltf").read_text())
+        arguments = ["inspect", "lamp.gltf", "--height", 32, "--pixel", "28,17", "--json", "i.json"]
+        self.run_program(*arguments)
+        near = json.loads((self.folder / "i.json").read_text())
+        scene["nodes"].append({"translation": [1e6, 0, -5e5], "children": [0, 1]})
+        scene["scenes"][0]["nodes"] = [2]
+        (self.folder / "lamp.gltf").write_text(json.dumps(scene))
+        run = self.run_program(*arguments)
+        far = json.loads((self.folder / "i.json").read_text())
+        self.assertIn("at (1000000.00, 1.00, -500000.00)", run.stdout)
+        self.assertEqual(far["ranked"][0]["position"], [1e6, 1, -5e5])
+        for before, after, moved in zip(near["surface"]["position"], far["surface"]["position"],
+                                        [1e6, 0, -5e5]):
+            self.assertAlmostEqual(after, before + moved, 5)
+        self.assertEqual(far["luminance"], near["luminance"])
+
     def test_inspect_where_nothing_is_to_be_seen(self):
         self.write_lamp()
         run = self.run_program("inspect", "lamp.gltf", "--height", 32, "--pixel", "0,0", "--json",

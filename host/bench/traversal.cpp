@@ -27,7 +27,9 @@ bool is_right(const reference::Tracer& tracer, const reference::Ray& ray, bool a
         if (hit.has_value() != (found < infinity)) return false;
         return any_hit || !hit || std::abs(hit->t - found) <= 1e-4 * hit->t;
     };
-    return agrees(ray) || std::ranges::any_of(reference::Tracer::neighbours(ray, {shift, shift}), agrees);
+    return agrees(ray) ||
+           std::ranges::any_of(
+               reference::Tracer::neighbours(ray, {glm::dvec3(shift), glm::dvec3(shift)}), agrees);
 }
 
 std::size_t judge(const RaySet& set, const reference::Tracer& tracer, float reach,

@@ -15,13 +15,14 @@ std::string kind_name(const Light& light) {
     return names[kind_of(light)];
 }
 
-// In the world; of a directional light, the unit direction to it.
-glm::vec3 centre_of(const Light& light) {
+// In the file's frame; of a directional light, the unit direction to it.
+glm::dvec3 centre_of(const Scene& scene, const Light& light) {
     const glm::vec3 sides = glm::vec3(light.axis) + glm::vec3(light.edge);
+    glm::vec3 centre(light.position);
     if (kind_of(light) == LIGHT_DIRECTIONAL) return -glm::vec3(light.axis);
-    if (kind_of(light) == LIGHT_TRIANGLE) return glm::vec3(light.position) + sides / 3.f;
-    if (kind_of(light) == LIGHT_QUAD) return glm::vec3(light.position) + sides / 2.f;
-    return light.position;
+    if (kind_of(light) == LIGHT_TRIANGLE) centre += sides / 3.f;
+    if (kind_of(light) == LIGHT_QUAD) centre += sides / 2.f;
+    return scene.in_file(centre);
 }
 
 std::string own_name(const Scene& scene, std::size_t light) {
@@ -37,9 +38,9 @@ std::string name_of(const Scene& scene, std::size_t light) {
                         : fmt::format("{} light '{}'", kind, name);
 }
 
-std::string place_of(const Light& light) {
-    const std::string place = show(centre_of(light));
-    return kind_of(light) == LIGHT_DIRECTIONAL ? "from " + place : "at " + place;
+std::string place_of(const Scene& scene, std::size_t light) {
+    const std::string place = show(centre_of(scene, scene.lights[light]));
+    return kind_of(scene.lights[light]) == LIGHT_DIRECTIONAL ? "from " + place : "at " + place;
 }
 
 nlohmann::json describe(const Scene& scene, std::size_t light) {
@@ -48,13 +49,13 @@ nlohmann::json describe(const Scene& scene, std::size_t light) {
     return {{"light", light},
             {"name", own_name(scene, light)},
             {"kind", kind_name(l)},
-            {place, vector_json(centre_of(l))}};
+            {place, vector_json(centre_of(scene, l))}};
 }
 
-std::string show(const glm::vec3& v) {
+std::string show(const glm::dvec3& v) {
     return fmt::format("({:.2f}, {:.2f}, {:.2f})", v.x, v.y, v.z);
 }
 
-nlohmann::json vector_json(const glm::vec3& v) { return {v.x, v.y, v.z}; }
+nlohmann::json vector_json(const glm::dvec3& v) { return {v.x, v.y, v.z}; }
 
 }  // namespace manylight

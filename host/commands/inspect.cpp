@@ -54,8 +54,13 @@ struct Inspected {
                                   : fmt::format("{} lights", node(n).count);
     }
     [[nodiscard]] std::string place(const InspectedNode& n) const {
-        if (node(n).count == 1) return place_of(loaded.scene.lights[light(n)]);
-        return (NODE_IS_INFINITE(node(n)) ? "from " : "round ") + show(glm::vec3(node(n).centre));
+        if (node(n).count == 1) return place_of(loaded.scene, light(n));
+        return (NODE_IS_INFINITE(node(n)) ? "from " : "round ") + show(centre(node(n)));
+    }
+    // In the file's frame, or a direction.
+    [[nodiscard]] glm::dvec3 centre(const LightNode& n) const {
+        const glm::vec3 centre(n.centre);
+        return NODE_IS_INFINITE(n) ? glm::dvec3(centre) : loaded.scene.in_file(centre);
     }
 };
 
@@ -169,7 +174,7 @@ void print(const Inspected& in, std::size_t rows) {
         facing += n.facing;
         seen += n.seen;
     }
-    say("surface: {}, normal {}, {:.2f} m from the camera\n", show(glm::vec3(r.surface.position)),
+    say("surface: {}, normal {}, {:.2f} m from the camera\n", show(scene.in_file(r.surface.position)),
         show(glm::vec3(r.surface.normal)), r.surface.position.w);
     say("         {}\n", material_text(scene, r));
     say("lights:  of {}, {} face it, and it sees {} of those\n", scene.lights.size(), facing, seen);
@@ -213,7 +218,7 @@ json to_json(const Inspected& in, std::size_t rows) {
         json entry = node.count == 1 ? describe(in.loaded.scene, in.light(n)) : json::object();
         if (node.count > 1)
             entry[NODE_IS_INFINITE(node) ? "direction" : "position"] =
-                vector_json(glm::vec3(node.centre));
+                vector_json(in.centre(node));
         entry.update({{"node", n.node},
                       {"lights", node.count},
                       {"lights_facing", n.facing},
@@ -241,7 +246,7 @@ json to_json(const Inspected& in, std::size_t rows) {
 }
 
 json surface_json(const Scene& scene, const Surface& s) {
-    return {{"position", vector_json(glm::vec3(s.position))},
+    return {{"position", vector_json(scene.in_file(s.position))},
             {"normal", vector_json(glm::vec3(s.normal))},
             {"distance", s.position.w},
             {"triangle", s.triangle},

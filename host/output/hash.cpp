@@ -19,6 +19,7 @@ ContentHash& ContentHash::add(const Scene& scene) {
     const auto add_all = [this](const auto&... values) {
         (add(std::as_bytes(std::span(values))), ...);
     };
+    add(scene.origin.x).add(scene.origin.y).add(scene.origin.z);
     add_all(scene.vertices, scene.vertex_normals, scene.indices, scene.triangle_materials);
     add_all(scene.instances, scene.materials, scene.lights, scene.cell_areas, scene.maps,
             scene.textures);

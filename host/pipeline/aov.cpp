@@ -21,7 +21,9 @@ void depth(const BatchFacts& f, std::size_t item, float* out) {
 }
 
 void position(const BatchFacts& f, std::size_t item, float* out) {
-    if (hit(f, item)) copy(f.surfaces[item].position, out);
+    if (!hit(f, item)) return;
+    const float4& p = f.surfaces[item].position;
+    copy(float4(f.origin + glm::dvec3(p.x, p.y, p.z), 0), out);
 }
 
 void albedo(const BatchFacts& f, std::size_t item, float* out) {
@@ -56,7 +58,7 @@ const std::vector<Aov>& all_aovs() {
          "shading normal, world space; like all layers 0 where nothing is hit",
          normal},
         {"depth", {"depth.Z"}, false, "distance from the camera, m", depth},
-        {"position", {"position.X", "position.Y", "position.Z"}, false, "world space, m", position},
+        {"position", {"position.X", "position.Y", "position.Z"}, false, "in the file's frame, m", position},
         {"albedo", {"albedo.R", "albedo.G", "albedo.B"}, false, "base colour", albedo},
         {"cluster", {"cluster.Y"}, true, "number of the pixel's cluster", cluster},
         {"representative",

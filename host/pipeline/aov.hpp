@@ -13,6 +13,7 @@ namespace manylight {
 
 /// What a batch of tiles knows of its pixels, on the host.
 struct BatchFacts {
+    glm::dvec3 origin;                // Scene::origin
     std::vector<Material> materials;  // by Surface::shading
     std::vector<Surface> surfaces;    // [item], at the pixels' centres
     std::vector<uint> rows;           // [item] region; empty where nothing was clustered, as below

@@ -280,6 +280,7 @@ void Frame::cluster(const Visit& visit, Progress& progress) {
 void Frame::keep_aovs(const Tiles& batch) {
     if (result_.aovs.empty()) return;
     BatchFacts facts;
+    facts.origin = scene_.origin;
     facts.materials = stages_->scene.materials.download();
     facts.surfaces = stages_->centres.download(0, item_count(batch));
     if (plan_.clusters) {

@@ -36,6 +36,19 @@ Ray primary_ray(const Camera& camera, const Tiles& tiles, const glm::dvec2& poin
     return ray;
 }
 
+namespace {
+
+// How far off a triangle shadow rays start; see OFFSET_SCALE.
+double shadow_offset(const Triangle& triangle, const Hit& hit) {
+    const glm::dvec3 v0 = triangle.corner(0);
+    const glm::dvec3 parts = glm::abs(v0) + glm::abs(hit.u * (triangle.corner(1) - v0)) +
+                             glm::abs(hit.v * (triangle.corner(2) - v0)) +
+                             triangle.frame_rounding();
+    return OFFSET_SCALE * glm::dot(glm::abs(glm::normalize(triangle.face())), parts);
+}
+
+}  // namespace
+
 Surface surface_at(const Scene& scene, const Ray& ray, const std::optional<Hit>& hit) {
     Surface surface{};
     surface.position.w = -1;
@@ -56,7 +69,7 @@ Surface surface_at(const Scene& scene, const Ray& ray, const std::optional<Hit>&
     surface.position = float4(glm::vec3(position), static_cast<float>(hit->t));
     surface.normal = float4(glm::vec3(normal), 0);
     surface.geometric =
-        float4(glm::vec3(geometric), static_cast<float>(double{OFFSET_SCALE} * triangle.extent()));
+        float4(glm::vec3(geometric), static_cast<float>(shadow_offset(triangle, *hit)));
     surface.triangle = hit->triangle;
     surface.material = triangle.material();
     surface.shading = surface.material;

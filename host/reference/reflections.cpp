@@ -76,19 +76,15 @@ Reflection reflection(const Scene& scene, const Tracer& tracer, const Camera& ca
     const std::optional<Hit> hit = tracer.closest_hit(ray);
     out.value = reflected(scene, camera, surface, ray, hit);
     if (!judge) return out;
-    // Rounding of the origin, and of the direction: of a unit vector's parts.
-    double largest = 1;
-    for (int axis = 0; axis < 3; ++axis)
-        largest =
-            std::max({largest, std::abs(position[axis]), std::abs(double{camera.origin[axis]})});
     // What the value comes from: cells of one material and area emit alike.
     const auto source = [&](const std::optional<Hit>& h) {
         if (!h) return std::pair(~0u, 0.0);
         const Triangle triangle(scene, h->triangle);
         return std::pair(triangle.material(), triangle.cell_area());
     };
-    const double shift = 16 * epsilon * largest;
-    for (Ray moved : Tracer::neighbours(ray, {shift, shift})) {
+    // Of the direction: of a unit vector's parts.
+    const EndShifts shifts{origin_rounding(surface, ray.origin), glm::dvec3(16 * epsilon)};
+    for (Ray moved : Tracer::neighbours(ray, shifts)) {
         moved.direction = glm::normalize(moved.direction);
         const std::optional<Hit> other = tracer.closest_hit(moved);
         const glm::dvec3 value = reflected(scene, camera, surface, moved, other);

@@ -35,7 +35,7 @@ struct Emission {
     glm::dvec3 light;    // illuminance at normal incidence, lx
     bool infinite = false;
     double solid_angle = 0;  // of a light with area, sr
-    double turned = 0;       // by how much rounding moves the target about the light, m
+    glm::dvec3 moved{0};     // by how much rounding moves the target along each axis, m
 };
 
 double range_window(double distance, double range) {
@@ -112,7 +112,10 @@ Emission quad(const Light& light, const glm::dvec3& position, const glm::dvec2& 
     // On which side the target is may be in doubt, too.
     const double turn = normal_rounding(light) / area;
     const bool doubtful = std::abs(glm::dot(e.towards, n)) <= turn * area;
-    e.turned = light.edge.w * (doubtful ? 2 : std::min(2 * turn, 2.0));
+    const glm::dvec3 p(light.position);
+    const glm::dvec3 farthest = glm::max(glm::max(glm::abs(p), glm::abs(p + e1)),
+                                         glm::max(glm::abs(p + e2), glm::abs(p + e1 + e2)));
+    e.moved = 4 * epsilon * farthest + light.edge.w * (doubtful ? 2 : std::min(2 * turn, 2.0));
     e.light *= glm::dvec3(light.emission);
     return e;
 }
@@ -149,16 +152,6 @@ Emission emission(const Light& light, const glm::dvec3& position, const glm::dve
     return {};
 }
 
-EndShifts end_rounding(const Surface& surface, const Ray& shadow) {
-    const glm::dvec3 end = shadow.origin + (std::isinf(shadow.end) ? 0.0 : 1.0) * shadow.direction;
-    const auto largest = [](const glm::dvec3& v) {
-        return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
-    };
-    const double start =
-        std::max(largest(shadow.origin), double{surface.geometric.w} / OFFSET_SCALE);
-    return {16 * epsilon * start, 16 * epsilon * std::max(start, largest(end))};
-}
-
 Unshadowed shade(const glm::dvec3& position, const Surface& surface, const Material& material,
                  const Camera& camera, const Light& light, const glm::dvec2& u,
                  const LightShift& shift = {}) {
@@ -177,8 +170,7 @@ Unshadowed shade(const glm::dvec3& position, const Surface& surface, const Mater
     out.shadow.origin = position + geometric * static_cast<double>(surface.geometric.w);
     out.shadow.direction = e.infinite ? e.towards : e.target - out.shadow.origin;
     if (!e.infinite) out.shadow.end = 1;
-    out.rounding = end_rounding(surface, out.shadow);
-    out.rounding.end += e.turned;
+    out.rounding = {origin_rounding(surface, out.shadow.origin), e.moved};
     return out;
 }
 
@@ -214,6 +206,10 @@ glm::dvec3 brdf(const Material& material, const glm::dvec3& normal, const glm::d
                 const glm::dvec3& wo) {
     const Brdf f = split_brdf(material, normal, wi, wo);
     return f.diffuse + f.specular;
+}
+
+glm::dvec3 origin_rounding(const Surface& surface, const glm::dvec3& origin) {
+    return epsilon * (glm::abs(origin) + double{surface.geometric.w});
 }
 
 bool reflects(const Surface& surface, const Material& material, const Camera& camera) {

@@ -21,6 +21,10 @@ struct Brdf {
 /// Unit direction from a point to the camera.
 [[nodiscard]] glm::dvec3 direction_to_camera(const Camera& camera, const glm::dvec3& position);
 
+/// How far single precision moves the start of a surface's shadow rays along each axis, m: by a
+/// unit in the last place, for the product with the normal and the sum.
+[[nodiscard]] glm::dvec3 origin_rounding(const Surface& surface, const glm::dvec3& origin);
+
 /// Whether stage reflections takes part in what the lobe reflects of area lights.
 [[nodiscard]] bool reflects(const Surface& surface, const Material& material, const Camera& camera);
 
@@ -38,10 +42,10 @@ struct Brdf {
 struct Unshadowed {
     glm::dvec3 value;  // f Le G of paper eq. (1), cd/m2
     Ray shadow;        // the segment to be free
-    // How far single precision moves its ends, m: by 16 units in the last place of their
-    // coordinates, the start by those of the triangle that it is off as well, and the end, which is
-    // off an area along that's normal, by what rounding does to the normal.
-    EndShifts rounding{0, 0};
+    // How far single precision moves its ends: see origin_rounding(); an area's point by 4 units in
+    // the last place of the area's coordinates, being a sum of products, and, as it is off along
+    // the area's normal, by what rounding does to that.
+    EndShifts rounding;
 };
 [[nodiscard]] Unshadowed unshadowed(const Surface& surface, const Material& material,
                                     const Camera& camera, const Light& light, const glm::dvec2& u);

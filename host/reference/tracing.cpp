@@ -136,25 +136,54 @@ std::optional<Hit> Tracer::hit_of(uint triangle, const Ray& ray) const {
     return hit;
 }
 
+// In the frame in which kernels meet it: its mesh's.
 std::optional<Tracer::RoundedHit> Tracer::meet_plane(uint triangle, const Ray& ray) const {
     const Triangle tested(scene_, triangle);
-    const glm::dvec3 v0 = tested.corner(0);
-    const glm::dvec3 e1 = tested.corner(1) - v0;
-    const glm::dvec3 e2 = tested.corner(2) - v0;
+    const glm::dvec3 from_place = ray.origin - tested.place();
+    const glm::dmat3 to_mesh = tested.to_mesh();
+    const glm::dvec3 d = to_mesh * ray.direction;
+    const glm::dvec3 v0 = tested.stored_corner(0);
+    const glm::dvec3 e1 = tested.stored_corner(1) - v0;
+    const glm::dvec3 e2 = tested.stored_corner(2) - v0;
     const glm::dvec3 n = glm::cross(e1, e2);
-    const glm::dvec3 s = ray.origin - v0;
-    const double determinant = -glm::dot(n, ray.direction);
+    const glm::dvec3 s = to_mesh * from_place - v0;
+    const double determinant = -glm::dot(n, d);
     if (determinant == 0) return {};
-    const glm::dvec3 q = glm::cross(s, ray.direction) / determinant;
-    RoundedHit met{
-        {triangle, glm::dot(n, s) / determinant, glm::dot(e2, q), -glm::dot(e1, q)}, 0, 0};
+    const double size = std::abs(determinant);
+    const glm::dvec3 q = glm::cross(s, d) / determinant;
+    const double t = glm::dot(n, s) / determinant;
     const double far = std::max({glm::length(s), glm::length(s - e1), glm::length(s - e2)});
     const double edge = std::max({glm::length(e1), glm::length(e2), glm::length(e2 - e1)});
     // Twice the kernels' margin (kernels/lib/bvh.h), whose test is rounded.
-    met.beyond = 2e-6 * far * edge * glm::length(ray.direction) / std::abs(determinant);
-    // Of the normal, a cross product, 2 units in the last place of the sides' product, times the
-    // distance; and as much again for what follows.
-    met.along = 8 * epsilon * far * edge * edge / std::abs(determinant);
+    RoundedHit met{{triangle, t, glm::dot(e2, q), -glm::dot(e1, q)},
+                   2e-6 * far * edge * glm::length(d) / size,
+                   0,
+                   0,
+                   0};
+    // Kernels' edges are rounded.
+    met.moved =
+        epsilon * glm::dot(glm::abs(n), glm::abs(met.hit.u * e1) + glm::abs(met.hit.v * e2)) / size;
+    // What cancels in the normal, a cross product. Kernels take no more than 3 times that for it,
+    // and pass over 4 units in the last place; what they compute is off by as much at most.
+    const glm::dvec3 f = glm::abs(e1);
+    const glm::dvec3 g = glm::abs(e2);
+    const glm::dvec3 m(f.y * g.z + f.z * g.y, f.z * g.x + f.x * g.z, f.x * g.y + f.y * g.x);
+    const double most = std::max({std::abs(d.x), std::abs(d.y), std::abs(d.z)});
+    met.start = met.moved + 16 * epsilon * glm::dot(glm::abs(s), m) / size;
+    met.before_end = 16 * epsilon * most * (m.x + m.y + m.z) / size;
+    if (!tested.is_of_instance()) return met;
+    // The ray in the mesh's frame: a difference, a matrix and sums of three products, rounded.
+    const auto moved_by = [&](const glm::dvec3& v) {
+        glm::dvec3 sizes(0);
+        for (int k = 0; k < 3; ++k) sizes += glm::abs(to_mesh[k]) * std::abs(v[k]);
+        return 4 * epsilon * sizes;
+    };
+    const glm::dvec3 origin = moved_by(from_place);
+    const glm::dvec3 direction = moved_by(ray.direction);
+    const double along = glm::dot(glm::abs(n), origin + std::abs(t) * direction) / size;
+    met.moved += along;
+    met.start += along;
+    met.beyond += glm::length(origin + std::abs(t) * direction) * edge * glm::length(d) / size;
     return met;
 }
 
@@ -184,12 +213,9 @@ bool Tracer::rounding_decides(const Ray& ray) const {
         }
         for (uint i = node.begin; i < node.end; ++i) {
             const auto met = meet_plane(order_[i], ray);
-            if (!met || met->inside() < -met->beyond) continue;
-            const double t = met->hit.t;
-            if (t < -met->along || t > ray.end + met->along || !is_there(ray, met->hit)) continue;
+            if (!met || !met->may_occlude(ray.end) || !is_there(ray, met->hit)) continue;
             maybe = true;
-            if (met->inside() > met->beyond && t > met->along && t < ray.end - met->along)
-                return false;
+            if (met->surely_occludes(ray.end)) return false;
         }
     }
     return maybe;
@@ -197,18 +223,17 @@ bool Tracer::rounding_decides(const Ray& ray) const {
 
 std::vector<Ray> Tracer::neighbours(const Ray& ray, EndShifts shifts) {
     std::vector<Ray> rays;
-    const double scale = std::isinf(ray.end) ? glm::length(ray.direction) : 1;
+    const bool infinite = std::isinf(ray.end);
     for (const double size : {1.0, 0.5, 0.25, 0.125, 0.0625})
         for (int k = 0; k < 64; ++k) {
-            const auto corner_of = [&](int bits, double distance) {
-                return glm::dvec3(bits & 1 ? 1 : -1, bits & 2 ? 1 : -1, bits & 4 ? 1 : -1) *
-                       (size * distance);
+            const auto corner_of = [&](int bits, const glm::dvec3& shift) {
+                return glm::dvec3(bits & 1 ? 1 : -1, bits & 2 ? 1 : -1, bits & 4 ? 1 : -1) * size *
+                       shift;
             };
             Ray moved = ray;
             const glm::dvec3 step = corner_of(k, shifts.origin);
             moved.origin += step;
-            // The far end moves, or the direction by as much per unit of length.
-            moved.direction += (corner_of(k >> 3, shifts.end) - step) * scale;
+            moved.direction += corner_of(k >> 3, shifts.end) - (infinite ? glm::dvec3(0) : step);
             rays.push_back(moved);
         }
     return rays;

@@ -21,9 +21,10 @@ struct Ray {
     glm::dvec3 direction_change[2] = {glm::dvec3(0), glm::dvec3(0)};
 };
 
-/// By how much rounding may move a segment's ends, along each axis.
+/// By how much rounding may move a segment's ends, along each axis, m; where it is infinite, `end`
+/// is by how much its direction.
 struct EndShifts {
-    double origin, end;
+    glm::dvec3 origin{0}, end{0};
 };
 
 struct Hit {
@@ -55,7 +56,8 @@ class Tracer {
 
     /// Whether single precision decides if the ray is occluded: some neighbour is and some is not,
     /// or no triangle is surely hit and one may be, near an edge or near the ray's ends, as far as
-    /// rounding goes in the test of a triangle of its shape.
+    /// rounding goes in the test of a triangle of its shape. The kernels' test passes over what is
+    /// nearer to an end than that, so that no surface occludes its own points.
     [[nodiscard]] bool occlusion_is_borderline(const Ray& ray, EndShifts shifts) const;
 
   private:
@@ -67,12 +69,23 @@ class Tracer {
     };
     int build(uint begin, uint end);
     void test(uint triangle, const Ray& ray, std::optional<Hit>& best) const;
-    // A hit of a triangle's plane, and what rounding may do to its weights and to its t.
+    // A hit of a triangle's plane, and what rounding may do to it.
     struct RoundedHit {
         Hit hit;
-        double beyond, along;
+        double beyond;  // weights may be so far outside, and it is hit
+        double moved;   // by how much t may be another one, as the triangle and the ray are rounded
+        // Where t is below `start`, or above the ray's end times 1 - `before_end` less `start`, the
+        // kernels may pass over it.
+        double start, before_end;
         // By how much all weights are inside.
         [[nodiscard]] double inside() const { return std::min({hit.u, hit.v, 1 - hit.u - hit.v}); }
+        [[nodiscard]] bool may_occlude(double end) const {
+            return inside() >= -beyond && hit.t > -moved && hit.t < end + moved;
+        }
+        [[nodiscard]] bool surely_occludes(double end) const {
+            return inside() > beyond && hit.t > start && before_end < 1 &&
+                   hit.t < end * (1 - before_end) - start;
+        }
     };
     [[nodiscard]] std::optional<RoundedHit> meet_plane(uint triangle, const Ray& ray) const;
     [[nodiscard]] bool rounding_decides(const Ray& ray) const;

@@ -19,9 +19,7 @@ glm::dvec3 unit_or_none(const glm::dvec3& v) {
     return glm::length(v) > 0 ? glm::normalize(v) : glm::dvec3(0);
 }
 
-double largest_part(const glm::dvec3& v) {
-    return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
-}
+glm::dmat3 sizes(const glm::dmat3& m) { return {glm::abs(m[0]), glm::abs(m[1]), glm::abs(m[2])}; }
 
 }  // namespace
 
@@ -61,13 +59,19 @@ glm::dvec4 Triangle::tangent(int k) const {
 
 double Triangle::cell_area() const { return instance_ ? 0 : scene_.cell_areas[stored_]; }
 
-double Triangle::extent() const {
-    double extent = 0;
-    for (int k = 0; k < 3; ++k) {
-        extent = std::max(extent, largest_part(corner(k)));
-        if (instance_) extent = std::max(extent, largest_part(corner(k) - place_of(*instance_)));
-    }
-    return extent;
+glm::dvec3 Triangle::stored_corner(int k) const { return glm::dvec3(scene_.vertices[vertex(k)]); }
+
+glm::dmat3 Triangle::to_mesh() const {
+    return instance_ ? glm::inverse(linear_part(*instance_)) : glm::dmat3(1);
+}
+
+glm::dvec3 Triangle::place() const { return instance_ ? place_of(*instance_) : glm::dvec3(0); }
+
+glm::dvec3 Triangle::frame_rounding() const {
+    if (!instance_) return glm::dvec3(0);
+    glm::dvec3 farthest(0);
+    for (int k = 0; k < 3; ++k) farthest = glm::max(farthest, glm::abs(corner(k) - place()));
+    return sizes(linear_part(*instance_)) * (sizes(to_mesh()) * farthest);
 }
 
 }  // namespace manylight::reference

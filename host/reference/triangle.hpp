@@ -26,8 +26,16 @@ class Triangle {
     [[nodiscard]] glm::dvec4 tangent(int k) const;
     /// Of each cell of the area light that it is, m2; 0: it is none.
     [[nodiscard]] double cell_area() const;
-    /// The largest coordinate of the corners, in the world and relative to the instance's place.
-    [[nodiscard]] double extent() const;
+    /// Corner k as it is stored, in the frame of its mesh.
+    [[nodiscard]] glm::dvec3 stored_corner(int k) const;
+    [[nodiscard]] bool is_of_instance() const { return instance_ != nullptr; }
+    /// Of the instance that it is of, or the identity and 0: a point p of the world is
+    /// to_mesh() * (p - place()) in the frame of its mesh.
+    [[nodiscard]] glm::dmat3 to_mesh() const;
+    [[nodiscard]] glm::dvec3 place() const;
+    /// By how much, in units of single precision, the way to the mesh's frame and back moves its
+    /// points along each axis, as in OFFSET_SCALE; 0 where it is of no instance.
+    [[nodiscard]] glm::dvec3 frame_rounding() const;
 
   private:
     const Scene& scene_;

@@ -53,11 +53,13 @@ std::vector<Emitter> find_emitters(const Scene& scene) {
             e.vertices[corner] = scene.vertices[scene.indices[3 * t + corner]];
             extent = glm::max(extent, glm::abs(e.vertices[corner]));
         }
-        const double area = glm::length(glm::dvec3(glm::cross(e.edge1(), e.edge2()))) / 2;
+        const glm::dvec3 face(glm::cross(e.edge1(), e.edge2()));
+        const double area = glm::length(face) / 2;
         if (!(area > least_area)) continue;
         find_texture(scene, e);
         if (e.radiance == glm::vec3(0)) continue;
-        e.offset = OFFSET_SCALE * std::max({extent.x, extent.y, extent.z});
+        e.offset = static_cast<float>(OFFSET_SCALE *
+                                      glm::dot(glm::abs(face) / (2 * area), glm::dvec3(extent)));
         e.power = glm::pi<double>() * area * luminance(e.radiance) * (e.both_sides ? 2 : 1);
         emitters.push_back(e);
     }

@@ -35,8 +35,8 @@ struct LoadOptions {
 ///
 /// Emissive triangles are no lights yet (see add_emitters), and powers are not set. The first
 /// scene's extras may hold "emitter_points", the number of oriented points that its emitters are
-/// meant to be rendered with.
-///
+/// meant to be rendered with. A scene far from the file's origin is read again about its own (see
+/// find_origin()).
 [[nodiscard]] Scene load_scene(const std::string& path, const LoadOptions& options = {});
 
 /// A glTF file before it has a meaning.

@@ -48,13 +48,14 @@ const tinygltf::Value& extension(const tinygltf::ExtensionMap& extensions, const
 
 class Loader {
   public:
-    Loader(const GltfFile& file, const LoadOptions& options)
+    Loader(const GltfFile& file, const LoadOptions& options, const glm::dvec3& origin)
         : file_(file),
           model_(parse_gltf(file)),
           accessors_(file, model_),
-          pose_(file, model_, accessors_, options.seconds),
+          pose_(file, model_, accessors_, options.seconds, origin),
           options_(options) {
         scene_.file = file.path;
+        scene_.origin = origin;
         notes_ = file.notes;
         for (const char* kind : {"buffers", "images"})
             if (file.json.contains(kind))
@@ -372,8 +373,10 @@ class Loader {
         const int mesh = model_.nodes[node].mesh;
         std::vector<glm::dmat4> places = mesh_instances(file_, node, accessors_);
         std::size_t copies = 0;
+        const glm::dmat4 from_file = glm::translate(glm::dmat4(1), -scene_.origin);
+        const glm::dmat4 to_file = glm::translate(glm::dmat4(1), scene_.origin);
         for (glm::dmat4& place : places) {
-            place = (skinned ? glm::dmat4(1) : pose_.to_world(node)) * place;
+            place = skinned ? from_file * place * to_file : pose_.to_world(node) * place;
             check_transform(place, node);
             if (is_shared_[mesh] && !can_be_instance(mesh, glm::dmat3(place))) ++copies;
         }
@@ -826,7 +829,11 @@ Scene load_scene(const std::string& path, const LoadOptions& options) {
         check_gltf(file);
     }
     mend_gltf(file, options.variant);
-    return Loader(file, options).load();
+    Scene scene = Loader(file, options, glm::dvec3(0)).load();
+    const glm::dvec3 origin = find_origin(scene.bounds());
+    if (origin == glm::dvec3(0)) return scene;
+    scene = {};  // before another is loaded
+    return Loader(file, options, origin).load();
 }
 
 }  // namespace manylight

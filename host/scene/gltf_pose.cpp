@@ -155,7 +155,7 @@ glm::dmat4 Pose::Transform::whole() const {
 }
 
 Pose::Pose(const GltfFile& file, const tinygltf::Model& model, Accessors& accessors,
-           std::optional<double> seconds)
+           std::optional<double> seconds, const glm::dvec3& origin)
     : file_(file), model_(model), is_at_rest_(!seconds) {
     std::vector<Transform> transforms(model.nodes.size());
     for (std::size_t i = 0; i < model.nodes.size(); ++i) {
@@ -177,7 +177,7 @@ Pose::Pose(const GltfFile& file, const tinygltf::Model& model, Accessors& access
             throw InputError("{}: --at {}: the file has no animations", file.path, *seconds);
         animate(accessors, *seconds, transforms);
     }
-    place_nodes(transforms);
+    place_nodes(transforms, origin);
 }
 
 void Pose::animate(Accessors& accessors, double seconds, std::vector<Transform>& transforms) {
@@ -204,14 +204,15 @@ void Pose::animate(Accessors& accessors, double seconds, std::vector<Transform>&
     }
 }
 
-void Pose::place_nodes(const std::vector<Transform>& transforms) {
+void Pose::place_nodes(const std::vector<Transform>& transforms, const glm::dvec3& origin) {
     to_world_.assign(model_.nodes.size(), glm::dmat4(1));
     std::vector<bool> is_child(model_.nodes.size(), false);
     for (const tinygltf::Node& node : model_.nodes)
         for (const int child : node.children) is_child[child] = true;
     std::vector<std::pair<int, glm::dmat4>> open;
     for (std::size_t i = 0; i < model_.nodes.size(); ++i)
-        if (!is_child[i]) open.emplace_back(static_cast<int>(i), glm::dmat4(1));
+        if (!is_child[i])
+            open.emplace_back(static_cast<int>(i), glm::translate(glm::dmat4(1), -origin));
     while (!open.empty()) {
         const auto [node, parent] = open.back();
         open.pop_back();

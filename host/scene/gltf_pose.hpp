@@ -11,13 +11,14 @@
 
 namespace manylight {
 
-/// The nodes' transforms and morph weights at a moment.
+/// The nodes' transforms and morph weights at a moment. Its world is the file's, counted from
+/// `origin`.
 class Pose {
   public:
     /// `seconds`: the moment of the first animation, before its first and after its last keyframe
     /// as there; none: at rest. Throws InputError, also where there is no animation.
     Pose(const GltfFile& file, const tinygltf::Model& model, Accessors& accessors,
-         std::optional<double> seconds);
+         std::optional<double> seconds, const glm::dvec3& origin);
 
     [[nodiscard]] bool is_at_rest() const { return is_at_rest_; }
     /// From a node's frame to the world, m.
@@ -37,7 +38,7 @@ class Pose {
     };
 
     void animate(Accessors& accessors, double seconds, std::vector<Transform>& transforms);
-    void place_nodes(const std::vector<Transform>& transforms);
+    void place_nodes(const std::vector<Transform>& transforms, const glm::dvec3& origin);
 
     const GltfFile& file_;
     const tinygltf::Model& model_;

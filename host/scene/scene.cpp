@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "scene/scene.hpp"
 
+#define GLM_ENABLE_EXPERIMENTAL
 #include <glm/gtc/matrix_transform.hpp>
+#include <glm/gtx/component_wise.hpp>
 
 #include "error.hpp"
 
@@ -87,6 +89,16 @@ Features find_features(const Scene& scene) {
     features.alpha = !scene.alpha_triangles.empty();
     features.instances = !scene.instances.empty();
     return features;
+}
+
+glm::dvec3 find_origin(const Bounds& bounds) {
+    if (bounds.empty()) return glm::dvec3(0);
+    const glm::dvec3 lower(bounds.lower);
+    const glm::dvec3 upper(bounds.upper);
+    const double side = glm::compMax(upper - lower);
+    if (!(glm::compMax(glm::max(lower, -upper)) > side)) return glm::dvec3(0);
+    const double unit = std::exp2(std::ceil(std::log2(std::max(side, 1e-3))));
+    return glm::round((lower + upper) / 2.0 / unit) * unit;
 }
 
 View find_view(const Scene& scene, const std::string& name) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // What a scene file means: triangles, materials, lights and cameras in world space (right-handed,
-// y up, metres, glTF's photometric units). Knows no OpenCL.
+// y up, metres, glTF's photometric units), about Scene::origin. Knows no OpenCL.
 #pragma once
 
 #include <cstdint>
@@ -66,6 +66,9 @@ struct SharedMesh {
 struct Scene {
     std::string file;                       // as the user named it
     std::vector<std::string> files;         // beside it, that it names
+    // Where positions are counted from, in the file's frame, m: 0, or near the middle of a scene
+    // that lies far from the file's own origin (see find_origin()).
+    glm::dvec3 origin{0};
     std::vector<glm::vec3> vertices;        // finite
     std::vector<glm::vec3> vertex_normals;  // per vertex, unit or 0 where flat; empty if all
     std::vector<std::uint32_t> indices;     // [3 * triangle + corner] into vertices
@@ -106,6 +109,8 @@ struct Scene {
     [[nodiscard]] std::size_t seen_triangle_count() const;
     /// Of all that is seen.
     [[nodiscard]] Bounds bounds() const;
+    /// A position in the file's frame, m.
+    [[nodiscard]] glm::dvec3 in_file(const glm::vec3& p) const { return origin + glm::dvec3(p); }
     /// Whether a surface point's material is its own: its textures and vertex colours say more than
     /// its triangle's does.
     [[nodiscard]] bool varies_materials() const { return !maps.empty() || !colors.empty(); }
@@ -141,6 +146,13 @@ struct Features {
 /// points of equal power, spread over all emissive triangles by power (paper section 5); their
 /// total power, as luminance, is the triangles'. Triangles without area emit nothing.
 void add_emitters(Scene& scene, unsigned points);
+
+/// Where a scene's positions are to be counted from, given its bounds in the file's frame: so that
+/// single precision tells its shapes as well as it can wherever it lies. The file's origin, unless
+/// the bounds lie farther from that along an axis than their longest side; then their centre,
+/// rounded to a multiple of a power of 2 no less than that side: a scene that is moved by such a
+/// multiple has the very same positions as before.
+[[nodiscard]] glm::dvec3 find_origin(const Bounds& bounds);
 
 /// The camera of that name, or the first for an empty name; a scene without cameras is framed from
 /// the front, above and right. Throws InputError for a name that the file does not have.

@@ -124,7 +124,8 @@ void Verifier::check_surface(Check& check, const Surface& found, uint x, uint y,
         // Another triangle is right if a ray that rounding cannot tell apart hits it, and nothing
         // well before it: where two triangles meet, rounding tells which is in front.
         const double shift = 16 * epsilon * reach_;
-        for (const reference::Ray& moved : reference::Tracer::neighbours(ray, {shift, shift})) {
+        for (const reference::Ray& moved :
+             reference::Tracer::neighbours(ray, {glm::dvec3(shift), glm::dvec3(2 * shift)})) {
             const auto closest = tracer_.closest_hit(moved);
             if (!found_hit && !closest) return check.skip_borderline();
             if (!found_hit) continue;
@@ -161,11 +162,35 @@ void Verifier::check_surface(Check& check, const Surface& found, uint x, uint y,
         glm::length(glm::dvec3(found.normal) - glm::dvec3(expected.normal)),
         normal_shift + 4 * shift / height + mapped_shift,
         fmt::format("{}: normal {} is not {}", where, show(found.normal), show(expected.normal)));
-    check.compare(std::abs(double{found.geometric.w} - expected.geometric.w),
-                  4 * epsilon * expected.geometric.w, where + ": offset");
+    check_offset(check, found, ray, *hit, shift / height, where);
     check.compare_exact(found.material == expected.material && found.front == expected.front,
                         where + ": material or side");
     check_material(check, found, ray, *hit, shift / height, where);
+}
+
+// The offset is the bound that it should be, as far as rounding of the normal and, by `shift`, of
+// the point's weights of vertices lets it, and takes shadow rays off the triangle.
+void Verifier::check_offset(Check& check, const Surface& found, const reference::Ray& ray,
+                            const reference::Hit& hit, double shift, const std::string& where) {
+    const auto offset = [&](const glm::dvec2& step) {
+        const reference::Hit moved{hit.triangle, hit.t, hit.u + step.x, hit.v + step.y};
+        return double{reference::surface_at(scene_, ray, moved).geometric.w};
+    };
+    const double expected = offset({0, 0});
+    const reference::Triangle triangle(scene_, hit.triangle);
+    const glm::dvec3 normal = glm::normalize(triangle.face()) * (found.front ? 1.0 : -1.0);
+    double slack = 16 * epsilon * expected;
+    for (const glm::dvec2& step : steps_of(shift)) slack += std::abs(offset(step) - expected);
+    for (int axis = 0; axis < 3; ++axis)
+        slack += OFFSET_SCALE * 3 * reach_ *
+                 std::abs(std::abs(found.geometric[axis]) - std::abs(normal[axis]));
+    check.compare(std::abs(found.geometric.w - expected), slack,
+                  fmt::format("{}: offset {} is not {}", where, found.geometric.w, expected));
+    const glm::dvec3 start =
+        glm::dvec3(found.position) + glm::dvec3(found.geometric) * double{found.geometric.w};
+    const double above = glm::dot(start - triangle.corner(0), normal);
+    check.compare(above >= 0 ? 0 : 2, 1,
+                  fmt::format("{}: shadow rays start {} m below the surface", where, -above));
 }
 
 // `shift`: what rounding may do to the point's weights of vertices.

@@ -100,27 +100,48 @@ static int_w enter_children(__global const float_w* node, const Prepared* s, flo
 // its own edge: as 1 - u - v the last would lose its precision in slivers.
 typedef struct PreparedBlock {
     float_k n[3], q[3], r[3], s[3];
-    float_k t;  // t times the determinant
+    float_k t;  // t times the determinant; 0 where its sign may be rounding's
+    // With its sign, the most that it may be before it was rounded.
+    float_k most_t;
     // For directions whose largest part is 1: by how much the weights times the determinant may be
-    // negative, and below what determinant the ray lies in the triangle's plane.
-    float_k margin_u, margin_v, margin_w, least_n;
+    // negative, below what determinant the ray lies in the triangle's plane, and by how much the
+    // determinant may be rounded up.
+    float_k margin_u, margin_v, margin_w, least_n, surplus_n;
 } PreparedBlock;
+
+// A ray that starts or ends on a triangle must not be occluded by it, however large it is and
+// however rounded its plane. With e = 2^-23, vertex 0 at a from the origin and edges f and g, the
+// normal is n_x = f_y g_z - f_z g_y, off by e m_x where m_x = |f_y g_z| + |f_z g_y|, and so on; a
+// is off by e/2, and a . n is rounded three times more on its way: |a|.m 3 e in all. A determinant
+// d . n with a direction that is off by e/2 itself is off by |d|.m 3 e likewise. m bounds what
+// cancels in the normal, axis by axis: of a level ground, only heights above it count, not how far
+// it goes. (Pharr, Jakob, Humphreys, "Physically Based Rendering" 4th ed., 6.8.7, bounds a . n so.)
+#define ROUNDING_SCALE 4.8e-7f
 
 static PreparedBlock prepare_block(__global const float_k* block, float3 origin) {
     const float_k ax = block[0] - origin.x, ay = block[1] - origin.y, az = block[2] - origin.z;
     const float_k fx = block[3], fy = block[4], fz = block[5];
     const float_k gx = block[6], gy = block[7], gz = block[8];
     PreparedBlock b;
-    b.n[0] = fma(fy, gz, -fz * gy);
-    b.n[1] = fma(fz, gx, -fx * gz);
-    b.n[2] = fma(fx, gy, -fy * gx);
+    const float_k px = fz * gy, py = fx * gz, pz = fy * gx;
+    b.n[0] = fma(fy, gz, -px);
+    b.n[1] = fma(fz, gx, -py);
+    b.n[2] = fma(fx, gy, -pz);
     b.q[0] = fma(gy, az, -gz * ay);
     b.q[1] = fma(gz, ax, -gx * az);
     b.q[2] = fma(gx, ay, -gy * ax);
     b.r[0] = fma(ay, fz, -az * fy);
     b.r[1] = fma(az, fx, -ax * fz);
     b.r[2] = fma(ax, fy, -ay * fx);
-    b.t = fma(ax, b.n[0], fma(ay, b.n[1], az * b.n[2]));
+    const float_k t = fma(ax, b.n[0], fma(ay, b.n[1], az * b.n[2]));
+    const float_k two = (float_k)(2.0f);
+    const float_k mx = fma(two, fabs(px), fabs(b.n[0])), my = fma(two, fabs(py), fabs(b.n[1])),
+                  mz = fma(two, fabs(pz), fabs(b.n[2]));
+    const float_k rounding = fma(fabs(ax), mx, fma(fabs(ay), my, fabs(az) * mz)) * ROUNDING_SCALE;
+    const int_k sure = fabs(t) > rounding;
+    b.t = select((float_k)(0.0f), t, sure);
+    b.most_t = select((float_k)(0.0f), t + copysign(rounding, t), sure);
+    b.surplus_n = (mx + my + mz) * ROUNDING_SCALE;
     const float_k bx = ax + fx, by = ay + fy, bz = az + fz;
     const float_k hx = gx - fx, hy = gy - fy, hz = gz - fz;
     b.s[0] = fma(by, hz, -bz * hy);
@@ -139,8 +160,10 @@ typedef struct BlockHits {
     int_k hit;
 } BlockHits;
 
-// One ray against all triangles; `size` is the largest part of its direction.
-static BlockHits hit_block(const PreparedBlock* b, float3 direction, float size, float end) {
+// One ray against all triangles; `size` is the largest part of its direction. Those that `occlude`
+// are hit before its end, however that is rounded; t is meaningless then.
+static BlockHits hit_block(const PreparedBlock* b, float3 direction, float size, float end,
+                           const bool occlude) {
     const float_k x = direction.x, y = direction.y, z = direction.z;
     const float_k n = fma(x, b->n[0], fma(y, b->n[1], z * b->n[2]));
     const float_k q = fma(x, b->q[0], fma(y, b->q[1], z * b->q[2]));
@@ -150,13 +173,16 @@ static BlockHits hit_block(const PreparedBlock* b, float3 direction, float size,
     const float_k v = as_float_k(as_int_k(r) ^ sign);
     BlockHits hits;
     hits.n = fabs(n);
-    hits.t = as_float_k(as_int_k(b->t) ^ sign);
+    hits.t = as_float_k(as_int_k(occlude ? b->most_t : b->t) ^ sign);
     const float_k s = fma(x, b->s[0], fma(y, b->s[1], z * b->s[2]));
     const float_k w = as_float_k(as_int_k(s) ^ sign);
     const float_k inside =
         min(min(fma(b->margin_u, size, u), fma(b->margin_v, size, v)), fma(b->margin_w, size, w));
-    hits.hit =
-        (inside >= 0.0f) & (hits.n > b->least_n * size) & (hits.t > 0.0f) & (hits.t < hits.n * end);
+    hits.hit = (inside >= 0.0f) & (hits.t > 0.0f);
+    if (occlude)
+        hits.hit &= hits.t < fma(b->surplus_n, (float_k)(-size), hits.n) * end;
+    else
+        hits.hit &= (hits.n > b->least_n * size) & (hits.t < hits.n * end);
     return hits;
 }
 
@@ -226,7 +252,8 @@ static bool occluded(BVH_PARAMETERS, Ray ray) {
         if (entry < 0) {
             __global const float_k* rows = bvh_blocks + (~entry >> 4) * BLOCK_ROWS;
             const PreparedBlock block = prepare_block(rows, traced.ray.origin);
-            uint found = lanes_k(hit_block(&block, traced.ray.direction, traced.size, ray.end).hit);
+            uint found =
+                lanes_k(hit_block(&block, traced.ray.direction, traced.size, ray.end, true).hit);
 #if HAS_ALPHA
             __global const uint* triangles = (__global const uint*)(rows + 9);
             for (; found; found &= found - 1u) {
@@ -283,7 +310,8 @@ static Hit closest_hit(BVH_PARAMETERS, Ray ray) {
         if (entry < 0) {
             __global const float_k* block = bvh_blocks + (~entry >> 4) * BLOCK_ROWS;
             const PreparedBlock ready = prepare_block(block, traced.ray.origin);
-            const BlockHits hits = hit_block(&ready, traced.ray.direction, traced.size, ray.end);
+            const BlockHits hits =
+                hit_block(&ready, traced.ray.direction, traced.size, ray.end, false);
             const uint found = lanes_k(hits.hit);
             if (!found) continue;
             __global const uint* triangles = (__global const uint*)(block + 9);

@@ -15,6 +15,12 @@ static float3 multiply_rows(__global const float4* rows, float3 v) {
     return (float3)(dot(rows[0].xyz, v), dot(rows[1].xyz, v), dot(rows[2].xyz, v));
 }
 
+// By absolute values: how large what multiply_rows() adds up is.
+static float3 multiply_sizes(__global const float4* rows, float3 v) {
+    return (float3)(dot(fabs(rows[0].xyz), v), dot(fabs(rows[1].xyz), v),
+                    dot(fabs(rows[2].xyz), v));
+}
+
 static float3 place_of(__global const Instance* in) {
     return (float3)(in->to_world[0].w, in->to_world[1].w, in->to_world[2].w);
 }

@@ -148,7 +148,8 @@ typedef struct TriangleHits {
 } TriangleHits;
 
 // hit_block() the other way round: a part's rays against triangle `lane` of a block.
-INLINE TriangleHits hit_triangle(const PreparedBlock* b, uint lane, const Packet* p, uint part) {
+INLINE TriangleHits hit_triangle(const PreparedBlock* b, uint lane, const Packet* p, uint part,
+                                 const bool occlude) {
     const float_n x = p->x[part], y = p->y[part], z = p->z[part], size = p->size[part];
 #define DOT(v) fma(x, LANE((v)[0], lane), fma(y, LANE((v)[1], lane), z* LANE((v)[2], lane)))
 #define WITH_MARGIN(margin, v) fma(size, LANE(margin, lane), as_float_n(as_int_n(DOT(v)) ^ sign))
@@ -158,9 +159,12 @@ INLINE TriangleHits hit_triangle(const PreparedBlock* b, uint lane, const Packet
     const float_n inside = min(min(WITH_MARGIN(b->margin_u, b->q), WITH_MARGIN(b->margin_v, b->r)),
                                WITH_MARGIN(b->margin_w, b->s));
     hits.n = fabs(n);
-    hits.t = as_float_n(as_int(LANE(b->t, lane)) ^ sign);
-    hits.hit = (inside >= 0.0f) & (hits.n > LANE(b->least_n, lane) * size) & (hits.t > 0.0f) &
-               (hits.t < p->end[part] * hits.n);
+    hits.t = as_float_n(as_int(occlude ? LANE(b->most_t, lane) : LANE(b->t, lane)) ^ sign);
+    hits.hit = (inside >= 0.0f) & (hits.t > 0.0f);
+    if (occlude)
+        hits.hit &= hits.t < fma(size, (float_n)(-LANE(b->surplus_n, lane)), hits.n) * p->end[part];
+    else
+        hits.hit &= (hits.n > LANE(b->least_n, lane) * size) & (hits.t < p->end[part] * hits.n);
     return hits;
 #undef WITH_MARGIN
 #undef DOT
@@ -284,7 +288,7 @@ static bool occlude_packet(BVH_PARAMETERS, Packet* p) {
                 for (uint rays = mask; rays; rays &= rays - 1u) {
                     const uint lane = lowest(rays);
                     uint found = lanes_k(hit_block(&block, direction_of(p, lane),
-                                                   LANE(p->size, lane), LANE(p->end, lane))
+                                                   LANE(p->size, lane), LANE(p->end, lane), true)
                                              .hit);
 #if HAS_ALPHA
                     for (; found; found &= found - 1u) {
@@ -302,7 +306,7 @@ static bool occlude_packet(BVH_PARAMETERS, Packet* p) {
                 for (uint triangle = 0u; triangle < triangles && (mask & live); ++triangle)
                     for (uint part = 0u; part < PARTS; ++part) {
                         if (PARTS > 1 && !PART_OF(mask & live, part)) continue;
-                        int_n hit = hit_triangle(&block, triangle, p, part).hit;
+                        int_n hit = hit_triangle(&block, triangle, p, part, true).hit;
 #if HAS_ALPHA
                         hit = there_for_all(p, part, hit, &block, triangle, names[triangle],
                                             names[triangle] + p->renumber ALPHA_ARGUMENTS);
@@ -378,8 +382,9 @@ INLINE void closest_hits(BVH_PARAMETERS, Packet* p, int_n* triangles) {
             if (popcount(mask) < PARTS * all) {
                 for (uint rays = mask; rays; rays &= rays - 1u) {
                     const uint lane = lowest(rays);
-                    const BlockHits hits = hit_block(&block, direction_of(p, lane),
-                                                     LANE(p->size, lane), LANE(p->end, lane));
+                    const BlockHits hits =
+                        hit_block(&block, direction_of(p, lane), LANE(p->size, lane),
+                                  LANE(p->end, lane), false);
                     const uint found = lanes_k(hits.hit);
                     if (!found) continue;
                     const float_k t = hits.t / hits.n;
@@ -400,7 +405,7 @@ INLINE void closest_hits(BVH_PARAMETERS, Packet* p, int_n* triangles) {
                 for (uint triangle = 0u; triangle < all; ++triangle)
                     for (uint part = 0u; part < PARTS; ++part) {
                         if (PARTS > 1 && !PART_OF(mask, part)) continue;
-                        TriangleHits hits = hit_triangle(&block, triangle, p, part);
+                        TriangleHits hits = hit_triangle(&block, triangle, p, part, false);
 #if HAS_ALPHA
                         hits.hit =
                             there_for_all(p, part, hits.hit, &block, triangle, names[triangle],

@@ -20,11 +20,20 @@ typedef struct Surface {
 } Surface;
 SHARED_SIZE(Surface, 64)
 
-/// Shadow rays start and end off a surface by this times the largest coordinate of its triangle's
-/// vertices, and of these relative to the place of the instance that it is of: the position's
-/// rounding error is a few units in the last place of those (the bound of Pharr, Jakob, Humphreys,
-/// "Physically Based Rendering" 3rd ed., 3.9.4, with room to spare).
-#define OFFSET_SCALE 4e-6f
+/// Shadow rays start off a surface with unit normal n by this times the sum over axes of |n_i| p_i,
+/// where p bounds what the point is made of, along each axis: |v_i| + |a_i| + |b_i| for a vertex
+/// and the parts of two edges that add up to it, and of an instance
+/// (|to_world| |to_object| |c|)_i besides, where c is the farthest corner from its place. They end
+/// off an emitter likewise, with p the largest coordinates of its vertices.
+///
+/// Derivation, with e = 2^-23 (each rounding is of e/2): edges are differences of vertices, and
+/// products with weights and sums are rounded, which moves the point off its plane along axis i by
+/// no more than 2 e p_i; putting it off the plane rounds twice more, e p_i. To an instance's frame
+/// and back, differences, matrices and sums of three products come to 7 e of their part. A point of
+/// an emitter is made of an area's corner and sides, each rounded once: 8 e p_i. This is 10 e.
+/// What the test of a triangle rounds is not in it (see prepare_block() in kernels/lib/bvh.h).
+/// (After Pharr, Jakob, Humphreys, "Physically Based Rendering" 4th ed., 6.8.)
+#define OFFSET_SCALE 1.2e-6f
 
 SHARED_END
 
