@@ -236,8 +236,8 @@ TEST(gltf, punctual_lights) {
     const Light& spot = scene.lights[1];
     EXPECT_EQ(spot.position.w, LIGHT_SPOT);
     expect_near(spot.axis, {0, 1, 0});
-    EXPECT_NEAR(std::cos(0.2f) * spot.edge.x + spot.edge.y, 1, 1e-5);
-    EXPECT_NEAR(std::cos(0.6f) * spot.edge.x + spot.edge.y, 0, 1e-5);
+    EXPECT_NEAR((spot.edge.y - (1 - std::cos(0.2f))) * spot.edge.x, 1, 1e-5);
+    EXPECT_NEAR((spot.edge.y - (1 - std::cos(0.6f))) * spot.edge.x, 0, 1e-5);
     EXPECT_EQ(scene.lights[2].position.w, LIGHT_DIRECTIONAL);
     expect_near(scene.lights[2].axis, {0, 1, 0});
     const Scene scaled = file.load({.lamp_scale = 0.5});
@@ -254,8 +254,8 @@ TEST(gltf, sharp_spots) {
     file.document["scenes"][0]["nodes"] = {0, 1};
     const Light spot = file.load().lights.at(0);
     const auto falloff = [&](double angle) {
-        return std::clamp(static_cast<float>(std::cos(angle)) * spot.edge.x + spot.edge.y, 0.f,
-                          1.f);
+        return std::clamp((spot.edge.y - static_cast<float>(1 - std::cos(angle))) * spot.edge.x,
+                          0.f, 1.f);
     };
     EXPECT_EQ(falloff(0.4999), 1);
     EXPECT_EQ(falloff(0.5001), 0);

@@ -2,6 +2,7 @@
 // Images whose exact value is known: each expected value is derived in a comment.
 #include <cmath>
 #include <glm/gtc/constants.hpp>
+#include <glm/gtc/matrix_transform.hpp>
 
 #include "reference/shading.hpp"
 #include "support.hpp"
@@ -99,6 +100,46 @@ TEST(lights, spot_cone) {
     }
 }
 
+// Beams down to a hundredth of a degree, sharp, nearly so and soft, seen along their axis as a disc
+// in an image 1.5 times as wide. The mean of clamp((v_o - v) / (v_o - v_i))^2, v = 1 - cos, over
+// directions is (v_i + (v_o - v_i) / 3) / v_o; so close to the axis, all else is the same
+// everywhere: albedo / pi * I cos / d^2.
+TEST(lights, narrow_beams) {
+    const glm::vec3 towards = glm::normalize(glm::vec3(0.1f, -1, 0.2f));
+    FOR_EACH_DEVICE(device)
+    for (const double degrees : {0.01, 0.25})
+        for (const double inner : {0.0, 0.99999, 1.0})
+            for (const char* sampler : {"exhaustive", "adaptive", "lighttree"}) {
+                const double outer = degrees * M_PI / 180;
+                const double radius = 10 * std::tan(outer);
+                Scene scene =
+                    plane_under([&](GltfWriter& out) {
+                        out.add_spot(-10.f * towards, towards, glm::vec3(100),
+                                     static_cast<float>(inner * outer), static_cast<float>(outer));
+                    }).scene;
+                View view;  // along the beam, onto the plane
+                view.orthographic = true;
+                view.half_height = 1.5 * radius;
+                view.to_world = glm::inverse(
+                    glm::lookAt(glm::dvec3(-towards), glm::dvec3(0), glm::dvec3(0, 0, 1)));
+                const test::TestScene seen{scene, make_camera(view, 96, 96), 96, 96};
+                RenderOptions options;
+                options.sampler = sampler;
+                options.spp = 16;
+                options.light_samples = 1;
+                double mean = 0;
+                const FrameResult result = test::render(device, seen, options);
+                for (const float v : result.image.values)
+                    mean += v / static_cast<double>(result.image.values.size());
+                const double v_o = 1 - std::cos(outer);
+                const double v_i = 1 - std::cos(inner * outer);
+                const double share = M_PI / 9 * (v_i + (v_o - v_i) / 3) / v_o;
+                const double expected = 0.6 / M_PI * 100 / 100 * -double{towards.y} * share;
+                EXPECT_NEAR(mean / expected, 1, 1e-3)
+                    << degrees << " degrees, inner " << inner << ", " << sampler;
+            }
+}
+
 // A spot's power, lm, against the integral of its intensity over the sphere.
 TEST(lights, spot_power) {
     const test::TestScene scene = plane_under([](GltfWriter& out) {
@@ -109,7 +150,7 @@ TEST(lights, spot_power) {
     constexpr int steps = 100000;
     for (int i = 0; i < steps; ++i) {
         const double cosine = -1 + 2 * (i + 0.5) / steps;
-        const double cone = std::clamp(cosine * light.edge.x + light.edge.y, 0.0, 1.0);
+        const double cone = std::clamp((light.edge.y - (1 - cosine)) * light.edge.x, 0.0, 1.0);
         integral += 5 * cone * cone * 2 * M_PI * 2 / steps;
     }
     EXPECT_NEAR(light.emission.w, integral, 1e-3 * integral);

@@ -104,41 +104,27 @@ float parallelogram(const Light& light) {
     return area * (light.axis.w != 0 ? 2.f : 1.f);
 }
 
-// Fills emission.w of every light; see shared/light.h.
-void set_powers(std::vector<Light>& lights, const Bounds& bounds) {
+// What emission.w of a light is; see shared/light.h.
+float power_of(const Light& light, const Bounds& bounds) {
     constexpr float pi = glm::pi<float>();
-    for (Light& light : lights) {
-        const float brightness = luminance(light.emission);
-        float& power = light.emission.w;
-        switch (static_cast<LightKind>(light.position.w)) {
-            case LIGHT_POINT:
-                power = 4 * pi * brightness;
-                break;
-            case LIGHT_SPOT: {
-                // The integral of clamp(c scale + offset)^2 over the sphere, c the cosine.
-                const float scale = light.edge.x;
-                const float outer = -light.edge.y / scale;
-                const float inner = std::min((1 - light.edge.y) / scale, 1.f);
-                const float at_inner = inner * scale + light.edge.y;
-                power =
-                    2 * pi * brightness * (1 - inner + (inner - outer) * at_inner * at_inner / 3);
-                break;
-            }
-            case LIGHT_DIRECTIONAL:
-                power = brightness * pi * bounds.radius() * bounds.radius();
-                break;
-            case LIGHT_ORIENTED:
-                power = pi * brightness;
-                break;
-            case LIGHT_TRIANGLE:
-                power = pi * brightness * parallelogram(light) / 2;
-                break;
-            case LIGHT_QUAD:
-                power = pi * brightness * parallelogram(light);
-                break;
-            case light_kind_count:
-                break;
-        }
+    const float brightness = luminance(light.emission);
+    switch (static_cast<LightKind>(light.position.w)) {
+        case LIGHT_POINT:
+            return 4 * pi * brightness;
+        case LIGHT_SPOT:
+            // Over the sphere, its 1 - cosine is uniform; the mean of the square where it fades is
+            // a third.
+            return 2 * pi * brightness * std::max(light.edge.y - 2 / (3 * light.edge.x), 0.f);
+        case LIGHT_DIRECTIONAL:
+            return brightness * pi * bounds.radius() * bounds.radius();
+        case LIGHT_ORIENTED:
+            return pi * brightness;
+        case LIGHT_TRIANGLE:
+            return pi * brightness * parallelogram(light) / 2;
+        case LIGHT_QUAD:
+            return pi * brightness * parallelogram(light);
+        case light_kind_count:
+            break;
     }
 }
 
@@ -160,7 +146,40 @@ void add_emitters(Scene& scene, unsigned points) {
             scene.cell_areas[emitters[i].triangle] = made.cell_areas[i];
     }
     scene.lights.insert(scene.lights.end(), lights.begin(), lights.end());
-    set_powers(scene.lights, scene.bounds());
+    const Bounds bounds = scene.bounds();
+    for (Light& light : scene.lights) light.emission.w = power_of(light, bounds);
+}
+
+bool is_dark(const Scene& scene) {
+    return scene.lights.empty() &&
+           std::ranges::none_of(scene.triangle_materials, [&](std::uint32_t material) {
+               const Material& m = scene.materials[material];
+               return m.unlit != 0 && glm::vec3(m.emission) != glm::vec3(0);
+           });
+}
+
+void add_headlight(Scene& scene, const View& view) {
+    constexpr double pi = glm::pi<double>();
+    constexpr double brightest = 1e15;  // cd, as of a file's own lights
+    const Bounds bounds = scene.bounds();
+    const glm::dvec3 forward(-view.to_world[2]);
+    Light light{};
+    if (view.orthographic) {
+        light.position.w = LIGHT_DIRECTIONAL;
+        light.axis = float4(glm::vec3(forward), 0);
+        light.emission = float4(glm::vec3(static_cast<float>(pi)), 0);
+    } else {
+        const glm::dvec3 place = glm::dvec3(view.to_world[3]) + view.near * forward;
+        const double distance = std::max(glm::distance(place, glm::dvec3(bounds.centre())),
+                                         static_cast<double>(bounds.radius()));
+        const double intensity = std::min(pi * distance * distance, brightest);
+        light.position = float4(glm::vec3(place), LIGHT_POINT);
+        light.emission = float4(glm::vec3(static_cast<float>(intensity)), 0);
+    }
+    light.emission.w = power_of(light, bounds);
+    const auto own = static_cast<std::ptrdiff_t>(scene.light_names.size());
+    scene.lights.insert(scene.lights.begin() + own, light);
+    scene.light_names.emplace_back("headlight");
 }
 
 }  // namespace manylight

@@ -516,9 +516,7 @@ class Loader {
                     float4(color, 0)};
         if (in.type == "spot") {
             light.position.w = LIGHT_SPOT;
-            const double outer = std::cos(in.spot.outerConeAngle);
-            const double scale = 1 / std::max(1e-5, std::cos(in.spot.innerConeAngle) - outer);
-            light.edge = float4(scale, -outer * scale, 0, 0);
+            light.edge = float4(spot_cone(in.spot.innerConeAngle, in.spot.outerConeAngle), 0, 0);
         } else if (in.type == "directional") {
             light.position.w = LIGHT_DIRECTIONAL;
             light.axis.w = 0;

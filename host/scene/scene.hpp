@@ -136,6 +136,10 @@ struct Features {
     return 0.2126f * rgb.r + 0.7152f * rgb.g + 0.0722f * rgb.b;
 }
 
+/// A spot's edge.x and edge.y (shared/light.h) by the angles of KHR_lights_punctual, radians. Where
+/// both are the same, its edge is sharp.
+[[nodiscard]] glm::vec2 spot_cone(double inner, double outer);
+
 /// Adds the lights of a scene's emissive triangles and sets the power of every light. `points` 0:
 /// area lights (see make_area_lights()), and their cells' areas. Otherwise that many oriented
 /// points of equal power, spread over all emissive triangles by power (paper section 5); their

@@ -79,7 +79,8 @@ INLINE Direct_n direct_n(const Lights_n* l, const Points_n* p, const Origins_n* 
 #endif
 #if HAS_SPOT
     const float_n off_axis = -dot3_n(wx, wy, wz, l->ax, l->ay, l->az);
-    const float_n cone = clamp(off_axis * l->ex + l->ey, 0.0f, 1.0f);
+    const float_n versine = versine_n(off_axis, wx, wy, wz, l->ax, l->ay, l->az);
+    const float_n cone = clamp((l->ey - versine) * l->ex, 0.0f, 1.0f);
     emitted = select(emitted, within * cone * cone, l->kind == LIGHT_SPOT);
 #endif
 #if HAS_ORIENTED || HAS_TRIANGLE || HAS_QUAD
