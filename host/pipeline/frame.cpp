@@ -81,9 +81,10 @@ uint Frame::samples_of(uint i) const {
     return sampler_.all_lights || lights == 0 ? lights : options_.samples_of(i);
 }
 
-// Pixel samples count by their light samples.
+// Pixel samples count by their light samples, and alike where there are no lights.
 float Frame::weight_of(uint i) const {
-    return static_cast<float>(samples_of(i)) / static_cast<float>(std::max(samples_of(0), 1u));
+    if (scene_.lights.empty()) return 1;
+    return static_cast<float>(samples_of(i)) / static_cast<float>(samples_of(0));
 }
 
 // Positions in the pixel, and reflections, are stratified over samples. What the error is estimated
