@@ -98,6 +98,7 @@ json make_parameters(const RenderOptions& o, const LoadedScene& loaded, const Fr
         {"scene", loaded.scene.file},
         {"camera", loaded.view.name},
         {"emitter_points", loaded.emitter_points},
+        {"headlight", loaded.headlight},
         {"sampler", o.sampler},
         {"light_samples", result.light_samples},
         {"later_light_samples", result.later_light_samples},
