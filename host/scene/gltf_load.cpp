@@ -483,6 +483,8 @@ class Loader {
         if (view.orthographic) {
             const double x = camera.orthographic.xmag;
             const double y = camera.orthographic.ymag;
+            view.near = camera.orthographic.znear;
+            view.far = camera.orthographic.zfar;
             view.aspect = std::abs(x / y);
             view.half_height = std::abs(y);
             if (x < 0) view.to_world[0] = -view.to_world[0];
@@ -491,6 +493,8 @@ class Loader {
                 notes_.add(fmt::format("cameras[{}]", node.camera),
                            "has a negative xmag or ymag; its image is mirrored");
         } else {
+            view.near = camera.perspective.znear;
+            view.far = camera.perspective.zfar;
             view.aspect = std::max(camera.perspective.aspectRatio, 0.0);
             view.half_height = std::tan(camera.perspective.yfov / 2);
         }

@@ -112,8 +112,8 @@ Camera make_camera(const View& view, unsigned width, unsigned height,
     const glm::dvec4 none(0);
     Camera camera;
     camera.origin = vector(view.to_world[3] + (view.orthographic ? aside : none), 0);
-    camera.right = vector(right, 0);
-    camera.up = vector(up, 0);
+    camera.right = vector(right, view.near);
+    camera.up = vector(up, view.far);
     camera.forward =
         vector((view.orthographic ? none : aside) - view.to_world[2], view.orthographic ? 1 : 0);
     return camera;

@@ -26,6 +26,8 @@ struct View {
     bool orthographic = false;
     double aspect = 0;       // width / height; 0 where the file leaves it to the image
     double half_height = 0;  // of the image: m if orthographic, otherwise tan(yfov / 2)
+    double near = 0;         // nothing nearer is seen, m along the view
+    double far = 0;          // nor anything farther; 0: all is
 };
 
 struct Bounds {
