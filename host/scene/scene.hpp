@@ -145,12 +145,23 @@ struct Features {
 /// Adds the lights of a scene's emissive triangles and sets the power of every light. `points` 0:
 /// area lights (see make_area_lights()), and their cells' areas. Otherwise that many oriented
 /// points of equal power, spread over all emissive triangles by power (paper section 5); their
-/// total power, as luminance, is the triangles'. Triangles without area emit nothing.
+/// total power, as luminance, is the triangles'. Triangles without area emit nothing. Where not all
+/// of an emitter is there (Material::cutoff), it emits as much as there is of it.
 void add_emitters(Scene& scene, unsigned points);
 
+/// Whether nothing of a scene shows: no light is left after add_emitters(), and nothing is unlit.
+[[nodiscard]] bool is_dark(const Scene& scene);
+
+/// Adds a light of the camera's own to a scene that has its other lights, last of the file's: a
+/// perspective camera's is a point in the middle of its near plane, an orthographic one's shines
+/// along its view. A white surface that faces the camera has about 1 cd/m2, where the camera is a
+/// point as far from it as from the scene's middle, or as far as the scene's radius.
+void add_headlight(Scene& scene, const View& view);
+
 /// The camera of that name, or the first for an empty name; a scene without cameras is framed from
-/// the front, above and right. Throws InputError for a name that the file does not have.
-[[nodiscard]] View find_view(const Scene& scene, const std::string& name);
+/// the front, above and right, so that what it shows fills 85% of an image of that width / height,
+/// or of one that is as high. Throws InputError for a name that the file does not have.
+[[nodiscard]] View find_view(const Scene& scene, const std::string& name, double aspect = 16.0 / 9);
 
 /// The camera for an image of that size; keeps the view's height where the aspect differs. `shift`
 /// by pixels, to the right and down, shows what lies there, as a shifted lens does.
