@@ -134,7 +134,10 @@ static void write_surface(Tiles tiles, Camera camera, __global Surface* surfaces
     const float3 face = cross(v1 - v0, v2 - v0);
     const float2 weights = hit_weights(ray, v0, v1 - v0, v2 - v0);
     const bool front = dot(face, ray.direction) < 0.0f;
-    const float3 geometric = normalize(front ? face : -face);
+    // The square of a small face would be too small for a float.
+    const float largest = max(largest_part(face), 1e-37f);
+    const float3 scaled = face / largest;
+    const float3 geometric = normalize(front ? scaled : -scaled);
     float3 normal = geometric;
 #if HAS_SMOOTH
     const float3 smooth =
@@ -167,7 +170,7 @@ static void write_surface(Tiles tiles, Camera camera, __global Surface* surfaces
 #endif
 #if HAS_TEXTURES
     const float share =
-        seen_area(tiles, camera, ray, distance, geometric) / max(length(face), 1e-30f);
+        seen_area(tiles, camera, ray, distance, geometric) / max(largest * length(scaled), 1e-37f);
     const uint map = MAP_KIND_COUNT * material;
     color *= sample_map(TEXTURE_ARGUMENTS, map + MAP_BASE_COLOR, corner, weights, share).xyz;
     const float4 polish =

@@ -156,6 +156,55 @@ TEST(lights, spot_power) {
     EXPECT_NEAR(light.emission.w, integral, 1e-3 * integral);
 }
 
+// The room of a square lamp, and the same a billion times smaller, where its corners' products are
+// too small to be squared in single precision.
+TEST(lights, nanometres) {
+    const auto room = [](float size) {
+        return test::make_scene(
+            [&](GltfWriter& out) {
+                Mesh floor;
+                floor.add_quad({-size, 0, size}, {2 * size, 0, 0}, {0, 0, -2 * size});
+                out.add_mesh("floor", floor, out.add_diffuse(glm::vec3(0.5f)));
+                Mesh lamp;
+                lamp.add_quad({-0.05f * size, size, -0.05f * size}, {0.1f * size, 0, 0},
+                              {0, 0, 0.1f * size});
+                out.add_mesh("lamp", lamp, out.add_emitter(glm::vec3(4)));
+                out.add_camera("camera", {0, 1.5f * size, 3 * size}, {0, 0.3f * size, 0}, 0.8f, 1);
+            },
+            24, 24);
+    };
+    const test::TestScene usual = room(0.2f);
+    test::TestScene small = room(0.2e-9f);
+    small.camera.right.w = 0;  // the near plane is beyond all
+    for (const unsigned points : {0u, 8u}) {
+        test::TestScene a = usual;
+        test::TestScene b = small;
+        if (points > 0)
+            for (test::TestScene* scene : {&a, &b}) {
+                scene->scene.lights.clear();
+                scene->scene.cell_areas.clear();
+                add_emitters(scene->scene, points);
+            }
+        EXPECT_EQ(a.scene.lights.size(), b.scene.lights.size());
+        FOR_EACH_DEVICE(device)
+        for (const char* sampler : {"exhaustive", "adaptive"}) {
+            RenderOptions options;
+            options.sampler = sampler;
+            options.spp = 1;
+            const std::vector<float> found = test::render(device, b, options).image.values;
+            const std::vector<float> expected = test::render(device, a, options).image.values;
+            double difference = 0;
+            double sum = 0;
+            for (std::size_t i = 0; i < found.size(); ++i) {
+                difference += std::abs(found[i] - expected[i]);
+                sum += expected[i];
+            }
+            EXPECT_GT(sum, 1);
+            EXPECT_LT(difference, 1e-3 * sum) << sampler << ", " << points << " points";
+        }
+    }
+}
+
 // A one-sided square of side a at height h over the point, parallel to the plane. Lambert's formula
 // for a polygon gives E = L / 2 * sum of edge angles * cosines; for this square, by its quarters,
 //   E = 4 * L / 2 * (X / sqrt(1 + X^2) * atan(X / sqrt(1 + X^2)) * 2), X = a / (2 h).

@@ -101,6 +101,11 @@ INLINE Direct_n direct_n(const Lights_n* l, const Points_n* p, const Origins_n* 
     solid_angle = select(zero, facing * inverse * inverse * from->reflects, area);
 #endif
     emitted = select(emitted, facing, oriented);
+    // The square of a small area would be too small for a float.
+    const float_n scale = inverse_n(max(max(max(fabs(nx), fabs(ny)), fabs(nz)), 1e-30f));
+    nx *= scale;
+    ny *= scale;
+    nz *= scale;
     const float_n offset = l->ew * inverse_root_n(max(dot3_n(nx, ny, nz, nx, ny, nz), 1e-30f));
     const float_n side = select(zero, select(offset, -offset, cosine < 0.0f), oriented);
     tx += nx * side;

@@ -90,7 +90,8 @@ static float emit_cosine(LightSample* s, float3 intensity, float3 normal, float 
     }
     if (cosine <= 0.0f) return 0.0f;
     s->emitted = intensity * (cosine / squared);
-    s->target += normal * (offset / length(normal));
+    const float largest = max(max(fabs(normal.x), fabs(normal.y)), fabs(normal.z));
+    s->target += normalize(normal / largest) * offset;  // whose square may be too small for a float
     return cosine / squared;
 }
 #endif
