@@ -58,9 +58,10 @@
         triangle_materials NORMAL_ARGUMENTS MATERIAL_ARGUMENTS MAP_ARGUMENTS COLOR_ARGUMENTS \
             PLACE_ARGUMENTS
 
-// The primary ray of an item; `jitter` 0 puts it through the pixel's centre.
+// The primary ray of an item, from where it meets the near plane, at `start`, to the far one;
+// `jitter` 0 puts it through the pixel's centre.
 static Ray primary_ray(Tiles tiles, uint item, Camera camera, uint jitter, uint pixel_sample,
-                       uint seed) {
+                       uint seed, float* start) {
     const uint2 pixel = item_pixel(tiles, item);
     const float2 within = jitter
                               ? pixel_position(pixel.y * tiles.width + pixel.x, pixel_sample, seed)
@@ -69,9 +70,12 @@ static Ray primary_ray(Tiles tiles, uint item, Camera camera, uint jitter, uint 
     const float sy = 1.0f - 2.0f * ((float)pixel.y + within.y) / (float)tiles.height;
     const float3 offset = camera.right.xyz * sx + camera.up.xyz * sy;
     const bool orthographic = camera.forward.w != 0.0f;
+    const float3 towards = camera.forward.xyz + offset;
+    const float along = orthographic ? 1.0f : length(towards);  // per unit of distance to a plane
+    *start = camera.right.w * along;
     const Ray ray = {orthographic ? camera.origin.xyz + offset : camera.origin.xyz,
-                     orthographic ? camera.forward.xyz : normalize(camera.forward.xyz + offset),
-                     INFINITY};
+                     orthographic ? camera.forward.xyz : normalize(towards),
+                     camera.up.w > 0.0f ? camera.up.w * along : INFINITY};
     return ray;
 }
 
@@ -131,7 +135,10 @@ static void write_surface(Tiles tiles, Camera camera, __global Surface* surfaces
     const float3 face = cross(edge1, edge2);
     const float2 weights = hit_weights(ray, v0, edge1, edge2);
     const bool front = dot(face, ray.direction) < 0.0f;
-    const float3 geometric = normalize(front ? face : -face);
+    // The square of a small face would be too small for a float.
+    const float largest = max(largest_part(face), 1e-37f);
+    const float3 scaled = face / largest;
+    const float3 geometric = normalize(front ? scaled : -scaled);
     float3 normal = geometric;
 #if HAS_SMOOTH
     const float3 smooth =
@@ -171,7 +178,7 @@ static void write_surface(Tiles tiles, Camera camera, __global Surface* surfaces
 #endif
 #if HAS_TEXTURES
     const float share =
-        seen_area(tiles, camera, ray, distance, geometric) / max(length(face), 1e-30f);
+        seen_area(tiles, camera, ray, distance, geometric) / max(largest * length(scaled), 1e-37f);
     const uint map = MAP_KIND_COUNT * material;
     color *= sample_map(TEXTURE_ARGUMENTS, map + MAP_BASE_COLOR, corner, weights, share).xyz;
     const float4 polish =
@@ -221,8 +228,9 @@ KERNEL void gbuffer_trace_rays(Tiles tiles, Camera camera, uint jitter, uint pix
                                __global Surface* surfaces) {
     const uint item = get_global_id(0);
     if (!item_in_image(tiles, item)) return;
-    const Ray ray = primary_ray(tiles, item, camera, jitter, pixel_sample, seed);
-    const Hit hit = closest_hit(BVH_ARGUMENTS, ray);
+    float start;
+    const Ray ray = primary_ray(tiles, item, camera, jitter, pixel_sample, seed, &start);
+    const Hit hit = closest_hit(BVH_ARGUMENTS, ray, start);
     write_surface(tiles, camera, surfaces, item, ray, hit.triangle, hit.t, MESH_ARGUMENTS);
 }
 
@@ -233,21 +241,24 @@ KERNEL void gbuffer_trace_packets(Tiles tiles, Camera camera, uint jitter, uint 
                                   __global Surface* surfaces) {
     const uint first = 16u * (uint)get_global_id(0);
     Packet packet;
+    float_n starts[PARTS];
     packet.origin = camera.origin.xyz;
     for (uint i = 0u; i < PARTS; ++i)
-        packet.x[i] = packet.y[i] = packet.z[i] = packet.end[i] = (float_n)(0.0f);
+        packet.x[i] = packet.y[i] = packet.z[i] = packet.end[i] = starts[i] = (float_n)(0.0f);
     for (uint i = 0u; i < 16u; ++i) {
         if (!item_in_image(tiles, first + i)) continue;
-        const Ray ray = primary_ray(tiles, first + i, camera, jitter, pixel_sample, seed);
+        float start;
+        const Ray ray = primary_ray(tiles, first + i, camera, jitter, pixel_sample, seed, &start);
         SET_LANE(packet.x, i, ray.direction.x);
         SET_LANE(packet.y, i, ray.direction.y);
         SET_LANE(packet.z, i, ray.direction.z);
-        SET_LANE(packet.end, i, INFINITY);
+        SET_LANE(packet.end, i, ray.end);
+        SET_LANE(starts, i, start);
     }
     if (!rays_of(&packet)) return;
     prepare_packet(&packet);
     int_n triangles[PARTS];
-    closest_hits(BVH_ARGUMENTS, &packet, triangles);
+    closest_hits(BVH_ARGUMENTS, &packet, starts, triangles);
     for (uint i = 0u; i < 16u; ++i) {
         if (!item_in_image(tiles, first + i)) continue;
         const Ray ray = {packet.origin, direction_of(&packet, i), INFINITY};

@@ -59,7 +59,7 @@ KERNEL void reflections_add(Tiles tiles, Camera camera, BVH_PARAMETERS,
     const float3 wi = sample_lobe(r.material.roughness, r.normal, r.to_camera, u);
     if (dot(r.normal, wi) <= 0.0f || dot(r.geometric, wi) <= 0.0f) return;
     const Ray ray = {shadow_origin(&r), wi, INFINITY};
-    const Hit hit = closest_hit(BVH_ARGUMENTS, ray);
+    const Hit hit = closest_hit(BVH_ARGUMENTS, ray, 0.0f);
 #if HAS_INSTANCES
     if (hit.triangle >= bvh_instances[0].first) return;  // no light is of one
 #endif

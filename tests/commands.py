@@ -307,7 +307,8 @@ class CommandTest(unittest.TestCase):
         self.assertIn("point light 'lamp'", run.stdout)
         self.assertIn("100.00%", run.stdout)
         self.write_lamp(lights=False)
-        run = self.run_program("render", "lamp.gltf", "--height", 16, "--top-lights", 5)
+        run = self.run_program("render", "lamp.gltf", "--height", 16, "--top-lights", 5,
+                               "--headlight", "never")
         self.assertIn("no light reaches the image", run.stdout)
         self.refuse("render", self.cornell, "--top-lights", 0, words=["--top-lights", "0"])
 
@@ -455,6 +456,36 @@ class CommandTest(unittest.TestCase):
         run = self.run_program("compare", name, "a.exr", "--ref", "a.exr", "--json")
         self.assertTrue(run.stdout[:-1].isprintable(), run.stdout)
         self.assertEqual(json.loads(run.stdout)["images"][0]["file"], name)
+
+    def test_headlight(self):
+        def mean(*options):
+            """The image's mean red, and the lines about headlights or the lack of lights."""
+            run = self.run_program("render", "lamp.gltf", "-o", "a.exr", "--height", 16, "--spp", 2,
+                                   "--stats", "s.json", "--seed", 3, *options)
+            self.assertEqual(json.loads((self.folder / "s.json").read_text())["spp"], 2)
+            stats = subprocess.run(["oiiotool", "--stats", "a.exr"], cwd=self.folder, check=True,
+                                   capture_output=True, text=True).stdout
+            said = [line for line in run.stderr.splitlines() if "light" in line]
+            return float(re.search(r"Stats Avg: +([-\d.e]+)", stats).group(1)), said
+
+        self.write_lamp(lights=False)
+        light, said = mean()
+        self.assertGreater(light, 0.01)
+        self.assertEqual(len(said), 1)
+        self.assertIn("headlight", said[0])
+        self.refuse("render", "lamp.gltf", "--checkpoint", "state", "--resume", "--headlight",
+                    "sometimes", words=["--headlight", "sometimes"])
+        dark, said = mean("--headlight", "never")
+        self.assertEqual(dark, 0)
+        self.assertEqual(len(said), 1)
+        self.assertIn("no lights", said[0])
+        self.write_lamp()
+        plain, said = mean("--checkpoint", "state")
+        self.assertEqual(said, [])
+        self.assertGreater(mean("--headlight", "always")[0], plain)
+        self.assertEqual(mean("--headlight", "never")[0], plain)
+        self.refuse("render", "lamp.gltf", "--height", 16, "--spp", 3, "--seed", 3, "--checkpoint",
+                    "state", "--resume", "--headlight", "always", words=["another render"])
 
     def test_variants_of_materials(self):
         self.write_lamp()

@@ -311,11 +311,94 @@ TEST(emitters, cells_cover_the_emitter) {
     EXPECT_EQ(met.size(), 84u);
 }
 
-// Normals of smaller ones cannot be told.
 TEST(emitters, triangles_without_extent_give_no_light) {
-    const float tiny = 1e-10f;
-    EXPECT_EQ(emitters_of({{0, 0, 0}, {tiny, 0, 0}, {0, tiny, 0}}).lights.size(), 0u);
-    EXPECT_EQ(emitters_of({{0, 0, 0}, {1e-8f, 0, 0}, {0, 1e-8f, 0}}).lights.size(), 1u);
+    EXPECT_EQ(emitters_of({{0, 0, 0}, {1, 0, 0}, {1, 0, 0}}).lights.size(), 0u);
+    EXPECT_EQ(emitters_of({{0, 0, 0}, {1, 1, 0}, {2, 2, 0}}).lights.size(), 0u);
+    for (const float tiny : {1e-8f, 1e-12f}) {
+        const Scene scene = emitters_of({{0, 0, 0}, {tiny, 0, 0}, {0, tiny, 0}});
+        ASSERT_EQ(scene.lights.size(), 1u);
+        EXPECT_NEAR(power_of(scene) / expected_power(scene), 1, 1e-5);
+    }
+}
+
+// A square lamp of side 1 whose base colour has a texture of `side` x `side` texels with those
+// alphas.
+Scene lamp_with_alphas(unsigned side, const std::vector<int>& alphas, float alpha, float cutoff,
+                       bool linear = false) {
+    Scene scene;
+    scene.vertices = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
+    scene.indices = {0, 1, 2, 0, 2, 3};
+    scene.triangle_materials = {0, 0};
+    scene.coordinates = {{{0, 0}, {1, 0}, {1, 1}, {0, 1}}};
+    Material material{};
+    material.emission = float4(radiance, 0);
+    material.alpha = alpha;
+    material.cutoff = cutoff;
+    scene.materials = {material};
+    Texture texture{};
+    texture.width = texture.height = side;
+    texture.levels = 1;
+    texture.format = TEXELS_LINEAR;
+    texture.magnified_linear = linear;
+    scene.textures = {texture};
+    for (const int a : alphas)
+        scene.texels.push_back(0xffffffu | static_cast<std::uint32_t>(a) << 24);
+    TextureMap none{};
+    none.texture = NO_TEXTURE;
+    scene.maps.assign(MAP_KIND_COUNT, none);
+    scene.maps[MAP_BASE_COLOR] = {float4(1, 0, 0, 0), float4(0, 1, 0, 0), 0, 0, 1, 0};
+    return scene;
+}
+
+double lit_share(Scene scene) {
+    add_emitters(scene, 0);
+    return power_of(scene) / expected_power(scene);
+}
+
+// Emitters of which not all is there: what is cut out by a mask gives no light, what is blended as
+// much as there is of it.
+TEST(emitters, as_much_as_is_there) {
+    const std::vector<int> corner = {255, 0, 0, 0};  // a quarter
+    EXPECT_NEAR(lit_share(lamp_with_alphas(2, corner, 1, 0)), 1, 1e-5);
+    EXPECT_NEAR(lit_share(lamp_with_alphas(2, corner, 1, 0.5f)), 0.25, 1e-5);
+    EXPECT_NEAR(lit_share(lamp_with_alphas(2, corner, 1, -1)), 0.25, 1e-5);
+    // The material's alpha, by which a mask may be all there or not at all.
+    EXPECT_NEAR(lit_share(lamp_with_alphas(2, corner, 0.4f, -1)), 0.1, 1e-5);
+    EXPECT_EQ(lit_share(lamp_with_alphas(2, corner, 0.4f, 0.5f)), 0);
+    EXPECT_NEAR(lit_share(lamp_with_alphas(1, {255}, 0.4f, -1)), 0.4, 1e-5);
+    EXPECT_NEAR(lit_share(lamp_with_alphas(1, {255}, 0.4f, 0.3f)), 1, 1e-5);
+    // Interpolated between the columns of texels, half is above a half.
+    const double linear = lit_share(lamp_with_alphas(2, {0, 255, 0, 255}, 1, 0.5f, true));
+    EXPECT_NEAR(linear, 0.5, 0.01);
+    // A fine mask: one in four of 64 x 64 texels.
+    std::vector<int> fine(64 * 64);
+    for (std::size_t i = 0; i < fine.size(); ++i) fine[i] = i % 2 == 0 && i / 64 % 2 == 0 ? 255 : 0;
+    EXPECT_NEAR(lit_share(lamp_with_alphas(64, fine, 1, 0.5f)), 0.25, 0.005);
+    // Without texture: the material's, and the vertices'.
+    Scene plain = lamp_with_alphas(1, {255}, 0.4f, -1);
+    plain.maps.clear();
+    EXPECT_NEAR(lit_share(plain), 0.4, 1e-5);
+    plain.colors = {float4(1, 1, 1, 1), float4(1, 1, 1, 0), float4(1, 1, 1, 0), float4(1, 1, 1, 1)};
+    EXPECT_NEAR(lit_share(plain), 0.2, 1e-3);
+    plain.materials[0].cutoff = 0.3f;  // where u < 1/4
+    EXPECT_NEAR(lit_share(plain), 0.25, 0.01);
+    // As oriented points, too.
+    Scene points = lamp_with_alphas(2, corner, 1, 0.5f);
+    add_emitters(points, 16);
+    EXPECT_NEAR(power_of(points) / expected_power(points), 0.25, 1e-5);
+}
+
+// ... and the light comes from there.
+TEST(emitters, from_where_something_is) {
+    Scene scene = lamp_with_alphas(2, {255, 0, 0, 0}, 1, 0.5f);
+    add_emitters(scene, 0);
+    EXPECT_EQ(scene.lights.size(), 64u);  // cells of 1/16 m
+    for (const Light& light : scene.lights) {
+        const float4 centre = light.position + (light.axis + light.edge) / 2.f;
+        EXPECT_LT(centre.x, 0.5f);
+        EXPECT_LT(centre.y, 0.5f);
+        EXPECT_EQ(glm::vec3(light.emission), radiance);
+    }
 }
 
 // Of each emissive triangle: as many cells as lights, and the lights' areas.

@@ -22,6 +22,27 @@ RenderOptions small_options(std::string_view sampler) {
 
 }  // namespace
 
+// Where there are no lights, what shows by itself does, and pixel samples are counted.
+TEST(frame, surfaces_show_without_lights) {
+    test::TestScene scene = test::make_scene([](GltfWriter& out) {
+        Mesh wall;
+        wall.add_quad({-9, -9, 0}, {18, 0, 0}, {0, 18, 0});
+        out.add_mesh("wall", wall, out.add_diffuse({1, 1, 1}));
+        out.add_camera("camera", {0, 0, 3}, {0, 0, 0}, 0.8f, 1.6f);
+    });
+    Material& material = scene.scene.materials[scene.scene.triangle_materials[0]];
+    material.emission = float4(0.5f, 0.3f, 0.8f, 1);
+    material.unlit = 1;
+    FOR_EACH_DEVICE(device)
+    for (const char* sampler : {"adaptive", "contribution-defensive", "exhaustive"}) {
+        const FrameResult result = test::render(device, scene, small_options(sampler));
+        EXPECT_EQ(result.spp, 2) << sampler;
+        for (std::size_t i = 0; i < result.image.values.size(); ++i)
+            ASSERT_NEAR(result.image.values[i], material.emission[static_cast<int>(i % 3)], 1e-6)
+                << sampler;
+    }
+}
+
 TEST(frame, same_seed_gives_the_same_bits) {
     FOR_EACH_DEVICE(device)
     for (const Sampler& sampler : all_samplers()) {

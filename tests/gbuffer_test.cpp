@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include <glm/gtc/matrix_transform.hpp>
 #include <random>
 
 #include "reference/gbuffer.hpp"
@@ -152,6 +153,53 @@ TEST(gbuffer, rays_that_are_no_numbers_end) {
     FOR_EACH_DEVICE(device)
     for (const Surface& s : trace(device, random_soup(500), camera, 16, tiles))
         EXPECT_FALSE(s.position.w >= 0);
+}
+
+// Between the planes of a camera that looks askew, and no others.
+TEST(gbuffer, cameras_clip_what_they_see) {
+    const Scene scene = random_soup(3000);
+    const reference::Tracer tracer(scene);
+    const Tiles tiles = all_tiles(64, 64, 32);
+    View view;
+    view.half_height = 0.5;
+    view.near = 2.6;
+    view.far = 3.3;
+    view.to_world = glm::rotate(glm::dmat4(1), 0.4, glm::dvec3(0.3, 1, 0.1));
+    view.to_world[3] = 3.0 * view.to_world[2] + glm::dvec4(0, 0, 0, 1);
+    FOR_EACH_DEVICE(device)
+    for (const bool orthographic : {false, true}) {
+        view.orthographic = orthographic;
+        if (orthographic) view.half_height = 1;
+        const Camera camera = make_camera(view, 64, 64, {7, -3});
+        const std::vector<Surface> found = trace(device, scene, camera, 8, tiles);
+        int differences = 0;
+        int hits = 0;
+        int clipped = 0;
+        reference::for_each_pixel(tiles, [&](uint x, uint y, std::size_t item) {
+            reference::Ray ray = reference::primary_ray(camera, tiles, {x + 0.5, y + 0.5});
+            const auto depth = [&](double t) {
+                return -glm::dot(ray.origin + t * ray.direction - glm::dvec3(view.to_world[3]),
+                                 glm::dvec3(view.to_world[2]));
+            };
+            const auto hit = tracer.closest_hit(ray);
+            if (hit) {
+                EXPECT_GT(depth(hit->t), view.near - 1e-6);
+                EXPECT_LT(depth(hit->t), view.far + 1e-6);
+            }
+            ray.start = 0;
+            ray.end = std::numeric_limits<double>::infinity();
+            const auto whole = tracer.closest_hit(ray);
+            if (whole && depth(whole->t) > view.near && depth(whole->t) < view.far) {
+                EXPECT_TRUE(hit && hit->t == whole->t);
+            }
+            hits += hit.has_value();
+            clipped += whole && (!hit || hit->t != whole->t);
+            if (std::abs(found[item].position.w - (hit ? hit->t : -1)) > 1e-4) ++differences;
+        });
+        EXPECT_LE(differences, 3);  // pixels whose ray grazes an edge
+        EXPECT_GT(hits, 300);
+        EXPECT_GT(clipped, 300);
+    }
 }
 
 // Position, distance and normals of a plane seen at an angle, worked out by hand.

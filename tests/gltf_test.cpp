@@ -10,6 +10,7 @@
 #include <cstring>
 #include <filesystem>
 #include <glm/gtc/constants.hpp>
+#include <glm/gtc/matrix_transform.hpp>
 
 #include "error.hpp"
 #include "gltf_file.hpp"
@@ -165,20 +166,120 @@ TEST(gltf, cameras) {
     EXPECT_THROW((void)find_view(scene, "top"), InputError);
 }
 
-// Without a camera the whole scene is in view.
-TEST(gltf, a_scene_without_camera_is_framed) {
-    GltfTest file;
-    file.document["nodes"][0]["scale"] = {40, 7, 3};
-    const Scene scene = file.load();
-    const Camera camera = make_camera(find_view(scene, ""), 100, 100);
-    for (const glm::vec3& p : scene.vertices) {
-        const glm::vec3 d = p - glm::vec3(camera.origin);
-        const float depth = glm::dot(d, glm::vec3(camera.forward));
+// What a framed view shows of the vertices: the largest part of the image's half width, and height.
+glm::dvec2 filled_part(const Scene& scene, double aspect) {
+    const Camera camera =
+        make_camera(find_view(scene, "", aspect), static_cast<unsigned>(1000 * aspect), 1000);
+    glm::dvec2 most(0);
+    for (std::size_t i = 0; i < scene.indices.size(); ++i) {
+        const glm::dvec3 d =
+            glm::dvec3(scene.vertices[scene.indices[i]]) - glm::dvec3(camera.origin);
+        const double depth = glm::dot(d, glm::dvec3(camera.forward));
         EXPECT_GT(depth, 0);
-        for (const float4& axis : {camera.right, camera.up}) {
-            const glm::vec3 a(axis);
-            EXPECT_LE(std::abs(glm::dot(d, a) / glm::dot(a, a)), depth);
+        int k = 0;
+        for (const float4& side : {camera.right, camera.up}) {
+            const glm::dvec3 a(side);
+            most[k] = std::max(most[k], std::abs(glm::dot(d, a) / glm::dot(a, a)) / depth);
+            ++k;
         }
+    }
+    return most;
+}
+
+// Without a camera the whole scene is in view and fills it, whatever its size and shape.
+TEST(gltf, a_scene_without_camera_is_framed) {
+    for (const double size : {1e-6, 3e-4, 1.0, 1e6})
+        for (const json& shape : {json{1, 1, 1}, {40, 7, 3}, {1, 90, 2}, {1, 2, 900}})
+            for (const double aspect : {16.0 / 9, 1.0, 0.5}) {
+                GltfTest file;
+                file.document["nodes"][0]["scale"] = {size * shape[0].get<double>(),
+                                                      size * shape[1].get<double>(),
+                                                      size * shape[2].get<double>()};
+                // A vertex that no triangle has.
+                file.primitive() = {{"attributes", {{"POSITION", 1}}}, {"indices", 2}};
+                const glm::dvec2 filled = filled_part(file.load(), aspect);
+                EXPECT_NEAR(std::max(filled.x, filled.y), 0.85, 1e-3)
+                    << size << ' ' << shape << ' ' << aspect;
+            }
+}
+
+// Instances count where they stand.
+TEST(gltf, instances_are_framed) {
+    GltfTest file;
+    const std::vector<float> places = {0, 0, 0, 5, 0, 0, 9, 1, -3};
+    const int translations = file.add_floats(places, "VEC3", 3);
+    file.document["extensionsUsed"] = {"EXT_mesh_gpu_instancing"};
+    file.document["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"] = {
+        {"attributes", {{"TRANSLATION", translations}}}};
+    const Scene copied = file.load(LoadOptions{.storage = MeshStorage::copied});
+    const glm::dvec2 filled = filled_part(copied, 1.5);
+    EXPECT_NEAR(std::max(filled.x, filled.y), 0.85, 1e-3);
+    Scene shared = copied;
+    SharedMesh mesh{0, 1, 0, 3, {}};
+    for (int v = 0; v < 3; ++v) mesh.bounds.add(copied.vertices[v]);
+    shared.shared_meshes = {mesh};
+    for (std::size_t i = 0; i < 3; ++i)
+        shared.instances.push_back(make_instance(glm::translate(
+            glm::dmat4(1), glm::dvec3(places[3 * i], places[3 * i + 1], places[3 * i + 2]))));
+    const View a = find_view(copied, "", 1.5);
+    const View b = find_view(shared, "", 1.5);
+    EXPECT_LT(glm::distance(a.to_world[3], b.to_world[3]), 1e-6);
+}
+
+// Lights at the camera: where it is, and what it gives a white surface there.
+TEST(gltf, headlights) {
+    GltfTest file;
+    file.document["nodes"][0]["translation"] = {0, 0, -4};
+    Scene scene = file.load();
+    EXPECT_TRUE(is_dark(scene));
+    View view;
+    view.near = 0.5;
+    add_headlight(scene, view);
+    ASSERT_EQ(scene.lights.size(), 1u);
+    EXPECT_FALSE(is_dark(scene));
+    EXPECT_EQ(scene.lights[0].position, float4(0, 0, -0.5f, LIGHT_POINT));
+    EXPECT_EQ(scene.light_names.back(), "headlight");
+    const double d2 = 0.25 + 0.25 + 3.5 * 3.5;  // to the middle of the triangle's bounds
+    EXPECT_NEAR(scene.lights[0].emission.r / d2, M_PI, 1e-5);
+    EXPECT_NEAR(scene.lights[0].emission.w / (4 * M_PI * M_PI * d2), 1, 1e-5);
+    view.orthographic = true;
+    scene.lights.insert(scene.lights.begin(), {Light{}});  // the file's own come first
+    add_headlight(scene, view);
+    EXPECT_EQ(scene.lights.size(), 3u);
+    EXPECT_EQ(scene.lights[1].position.w, LIGHT_DIRECTIONAL);
+    expect_near(scene.lights[1].axis, {0, 0, -1});
+    EXPECT_NEAR(scene.lights[1].emission.r, M_PI, 1e-6);
+    EXPECT_GT(scene.lights[1].emission.w, 0);
+}
+
+// Unlit surfaces show by themselves, unless they are black.
+TEST(gltf, unlit_scenes_are_not_dark) {
+    GltfTest file;
+    file.document["extensionsUsed"] = {"KHR_materials_unlit"};
+    file.document["materials"] = {{{"extensions", {{"KHR_materials_unlit", json::object()}}}}};
+    EXPECT_TRUE(is_dark(file.load()));  // nothing is of the material
+    file.primitive()["material"] = 0;
+    EXPECT_FALSE(is_dark(file.load()));
+    file.document["materials"][0]["pbrMetallicRoughness"]["baseColorFactor"] = {0, 0, 0, 1};
+    EXPECT_TRUE(is_dark(file.load()));
+}
+
+// The planes between which a camera sees.
+TEST(gltf, clipping_planes) {
+    GltfTest file;
+    file.document["cameras"] = {
+        {{"type", "perspective"}, {"perspective", {{"yfov", 1.0}, {"znear", 0.1}}}},
+        {{"type", "perspective"}, {"perspective", {{"yfov", 1.0}, {"znear", 2}, {"zfar", 7}}}},
+        {{"type", "orthographic"},
+         {"orthographic", {{"xmag", 1}, {"ymag", 1}, {"znear", 3}, {"zfar", 9}}}}};
+    file.document["nodes"] = {{{"mesh", 0}}, {{"camera", 0}}, {{"camera", 1}}, {{"camera", 2}}};
+    file.document["scenes"][0]["nodes"] = {0, 1, 2, 3};
+    const Scene scene = file.load();
+    const std::pair<float, float> expected[] = {{0.1f, 0}, {2, 7}, {3, 9}};
+    for (int i = 0; i < 3; ++i) {
+        const Camera camera = make_camera(scene.views[i], 100, 100);
+        EXPECT_EQ(camera.right.w, expected[i].first);
+        EXPECT_EQ(camera.up.w, expected[i].second);
     }
 }
 
@@ -236,8 +337,8 @@ TEST(gltf, punctual_lights) {
     const Light& spot = scene.lights[1];
     EXPECT_EQ(spot.position.w, LIGHT_SPOT);
     expect_near(spot.axis, {0, 1, 0});
-    EXPECT_NEAR(std::cos(0.2f) * spot.edge.x + spot.edge.y, 1, 1e-5);
-    EXPECT_NEAR(std::cos(0.6f) * spot.edge.x + spot.edge.y, 0, 1e-5);
+    EXPECT_NEAR((spot.edge.y - (1 - std::cos(0.2f))) * spot.edge.x, 1, 1e-5);
+    EXPECT_NEAR((spot.edge.y - (1 - std::cos(0.6f))) * spot.edge.x, 0, 1e-5);
     EXPECT_EQ(scene.lights[2].position.w, LIGHT_DIRECTIONAL);
     expect_near(scene.lights[2].axis, {0, 1, 0});
     const Scene scaled = file.load({.lamp_scale = 0.5});
@@ -254,8 +355,8 @@ TEST(gltf, sharp_spots) {
     file.document["scenes"][0]["nodes"] = {0, 1};
     const Light spot = file.load().lights.at(0);
     const auto falloff = [&](double angle) {
-        return std::clamp(static_cast<float>(std::cos(angle)) * spot.edge.x + spot.edge.y, 0.f,
-                          1.f);
+        return std::clamp((spot.edge.y - static_cast<float>(1 - std::cos(angle))) * spot.edge.x,
+                          0.f, 1.f);
     };
     EXPECT_EQ(falloff(0.4999), 1);
     EXPECT_EQ(falloff(0.5001), 0);

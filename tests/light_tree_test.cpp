@@ -44,7 +44,7 @@ std::vector<Light> random_lights(int count, bool directional) {
                 break;
             case 2:
                 scene.lights.push_back({float4(p, LIGHT_SPOT), float4(n, 0),
-                                        float4(2.5f, -1.5f, 0, 0), float4(color, 0)});
+                                        float4(2.5f, 0.4f, 0, 0), float4(color, 0)});
                 break;
             case 3:
             case 4:
@@ -175,7 +175,7 @@ TEST(light_tree, spots_shine_within_reach) {
     Scene scene;
     for (int i = 0; i < 256; ++i) {
         scene.lights.push_back({float4(static_cast<float>(i / 32), 2, 0, LIGHT_SPOT),
-                                float4(random_direction(engine), 0), float4(30, -29, 0, 0),
+                                float4(random_direction(engine), 0), float4(30, 1 / 30.f, 0, 0),
                                 float4(1, 1, 1, 0)});
     }
     Material white{};
@@ -211,6 +211,38 @@ TEST(light_tree, spots_shine_within_reach) {
     }
     EXPECT_GT(reached, 1000);
     EXPECT_GT(found_dark, 0.9 * dark);
+}
+
+// Narrow beams at one place, and points that each reaches: no node that holds its light is thought
+// not to.
+TEST(light_tree, narrow_beams_are_not_missed) {
+    std::mt19937 engine(9);
+    std::uniform_real_distribution<float> unit(0, 1);
+    for (const double angle : {2e-4, 1e-3, 0.02}) {
+        Scene scene;
+        for (int i = 0; i < 64; ++i)
+            scene.lights.push_back({float4(0, 2, 0, LIGHT_SPOT),
+                                    float4(random_direction(engine), 0),
+                                    float4(spot_cone(angle, angle), 0, 0), float4(1, 1, 1, 0)});
+        add_emitters(scene, 0);
+        const LightTree tree = build_light_tree(scene.lights);
+        for (std::size_t place = 0; place < tree.lights.size(); ++place) {
+            const glm::dvec3 axis(tree.lights[place].axis);
+            const glm::dvec3 side = glm::normalize(glm::cross(axis, glm::dvec3(1, 2, 3)));
+            for (int k = 0; k < 20; ++k) {
+                const double off = 0.99 * angle * unit(engine);
+                const glm::dvec3 towards = std::cos(off) * axis + std::sin(off) * side;
+                Surface surface{};
+                surface.position =
+                    float4(glm::vec3(glm::dvec3(0, 2, 0) + (1.0 + unit(engine)) * towards), 1);
+                surface.normal = surface.geometric = float4(glm::vec3(-towards), 0);
+                for (const LightNode& node : tree.nodes)
+                    if (node.first <= place && place < node.first + node.count) {
+                        ASSERT_GT(reference::importance(node, surface), 0) << angle;
+                    }
+            }
+        }
+    }
 }
 
 // Coincident lights, one light, none; sums that overflow nothing.

@@ -2,6 +2,7 @@
 // Images whose exact value is known: each expected value is derived in a comment.
 #include <cmath>
 #include <glm/gtc/constants.hpp>
+#include <glm/gtc/matrix_transform.hpp>
 
 #include "reference/shading.hpp"
 #include "support.hpp"
@@ -99,6 +100,46 @@ TEST(lights, spot_cone) {
     }
 }
 
+// Beams down to a hundredth of a degree, sharp, nearly so and soft, seen along their axis as a disc
+// in an image 1.5 times as wide. The mean of clamp((v_o - v) / (v_o - v_i))^2, v = 1 - cos, over
+// directions is (v_i + (v_o - v_i) / 3) / v_o; so close to the axis, all else is the same
+// everywhere: albedo / pi * I cos / d^2.
+TEST(lights, narrow_beams) {
+    const glm::vec3 towards = glm::normalize(glm::vec3(0.1f, -1, 0.2f));
+    FOR_EACH_DEVICE(device)
+    for (const double degrees : {0.01, 0.25})
+        for (const double inner : {0.0, 0.99999, 1.0})
+            for (const char* sampler : {"exhaustive", "adaptive", "lighttree"}) {
+                const double outer = degrees * M_PI / 180;
+                const double radius = 10 * std::tan(outer);
+                Scene scene =
+                    plane_under([&](GltfWriter& out) {
+                        out.add_spot(-10.f * towards, towards, glm::vec3(100),
+                                     static_cast<float>(inner * outer), static_cast<float>(outer));
+                    }).scene;
+                View view;  // along the beam, onto the plane
+                view.orthographic = true;
+                view.half_height = 1.5 * radius;
+                view.to_world = glm::inverse(
+                    glm::lookAt(glm::dvec3(-towards), glm::dvec3(0), glm::dvec3(0, 0, 1)));
+                const test::TestScene seen{scene, make_camera(view, 96, 96), 96, 96};
+                RenderOptions options;
+                options.sampler = sampler;
+                options.spp = 16;
+                options.light_samples = 1;
+                double mean = 0;
+                const FrameResult result = test::render(device, seen, options);
+                for (const float v : result.image.values)
+                    mean += v / static_cast<double>(result.image.values.size());
+                const double v_o = 1 - std::cos(outer);
+                const double v_i = 1 - std::cos(inner * outer);
+                const double share = M_PI / 9 * (v_i + (v_o - v_i) / 3) / v_o;
+                const double expected = 0.6 / M_PI * 100 / 100 * -double{towards.y} * share;
+                EXPECT_NEAR(mean / expected, 1, 1e-3)
+                    << degrees << " degrees, inner " << inner << ", " << sampler;
+            }
+}
+
 // A spot's power, lm, against the integral of its intensity over the sphere.
 TEST(lights, spot_power) {
     const test::TestScene scene = plane_under([](GltfWriter& out) {
@@ -109,10 +150,59 @@ TEST(lights, spot_power) {
     constexpr int steps = 100000;
     for (int i = 0; i < steps; ++i) {
         const double cosine = -1 + 2 * (i + 0.5) / steps;
-        const double cone = std::clamp(cosine * light.edge.x + light.edge.y, 0.0, 1.0);
+        const double cone = std::clamp((light.edge.y - (1 - cosine)) * light.edge.x, 0.0, 1.0);
         integral += 5 * cone * cone * 2 * M_PI * 2 / steps;
     }
     EXPECT_NEAR(light.emission.w, integral, 1e-3 * integral);
+}
+
+// The room of a square lamp, and the same a billion times smaller, where its corners' products are
+// too small to be squared in single precision.
+TEST(lights, nanometres) {
+    const auto room = [](float size) {
+        return test::make_scene(
+            [&](GltfWriter& out) {
+                Mesh floor;
+                floor.add_quad({-size, 0, size}, {2 * size, 0, 0}, {0, 0, -2 * size});
+                out.add_mesh("floor", floor, out.add_diffuse(glm::vec3(0.5f)));
+                Mesh lamp;
+                lamp.add_quad({-0.05f * size, size, -0.05f * size}, {0.1f * size, 0, 0},
+                              {0, 0, 0.1f * size});
+                out.add_mesh("lamp", lamp, out.add_emitter(glm::vec3(4)));
+                out.add_camera("camera", {0, 1.5f * size, 3 * size}, {0, 0.3f * size, 0}, 0.8f, 1);
+            },
+            24, 24);
+    };
+    const test::TestScene usual = room(0.2f);
+    test::TestScene small = room(0.2e-9f);
+    small.camera.right.w = 0;  // the near plane is beyond all
+    for (const unsigned points : {0u, 8u}) {
+        test::TestScene a = usual;
+        test::TestScene b = small;
+        if (points > 0)
+            for (test::TestScene* scene : {&a, &b}) {
+                scene->scene.lights.clear();
+                scene->scene.cell_areas.clear();
+                add_emitters(scene->scene, points);
+            }
+        EXPECT_EQ(a.scene.lights.size(), b.scene.lights.size());
+        FOR_EACH_DEVICE(device)
+        for (const char* sampler : {"exhaustive", "adaptive"}) {
+            RenderOptions options;
+            options.sampler = sampler;
+            options.spp = 1;
+            const std::vector<float> found = test::render(device, b, options).image.values;
+            const std::vector<float> expected = test::render(device, a, options).image.values;
+            double difference = 0;
+            double sum = 0;
+            for (std::size_t i = 0; i < found.size(); ++i) {
+                difference += std::abs(found[i] - expected[i]);
+                sum += expected[i];
+            }
+            EXPECT_GT(sum, 1);
+            EXPECT_LT(difference, 1e-3 * sum) << sampler << ", " << points << " points";
+        }
+    }
 }
 
 // A one-sided square of side a at height h over the point, parallel to the plane. Lambert's formula

@@ -265,6 +265,8 @@ CHANGES = {
     "camera znear missing": (put(LENS + ["znear"], ...), ["znear"]),
     "camera xmag 0": (put(ORTHO + ["xmag"], 0), ["xmag", "0"]),
     "camera zfar a string": (put(ORTHO + ["zfar"], "9"), ["zfar", "9"]),
+    "camera zfar at znear": (put(ORTHO + ["znear"], 9), ["zfar", "znear", "9"]),
+    "camera zfar before znear": (put(LENS + ["zfar"], 0.05), ["zfar", "0.05", "znear", "0.1"]),
     "base color of three": (put(PBR + ["baseColorFactor"], [1, 1, 1]), ["baseColorFactor", "3"]),
     "base color above 1": (put(PBR + ["baseColorFactor"], [1, 2, 1, 1]), ["baseColorFactor[1]", "2"]),
     "metallic above 1": (put(PBR + ["metallicFactor"], 1.5), ["metallicFactor", "1.5"]),

@@ -91,7 +91,7 @@ struct Rays {
             ray.dir_x[to] = p.x[from];
             ray.dir_y[to] = p.y[from];
             ray.dir_z[to] = p.z[from];
-            ray.tnear[to] = 0;
+            ray.tnear[to] = p.start[from];
             ray.tfar[to] = p.end[from] > 0 ? p.end[from] : -1;
             ray.time[to] = 0;
             ray.mask[to] = ~0u;
@@ -124,10 +124,18 @@ struct SingleRays {
         for (std::size_t i = 0; i < rays.size(); ++i) {
             const RayPacket& p = set.packets[i / 16];
             RTCRayHit& r = rays[i];
-            r.ray = {p.origin.x,  p.origin.y,  p.origin.z,
-                     0,           p.x[i % 16], p.y[i % 16],
-                     p.z[i % 16], 0,           p.end[i % 16] > 0 ? p.end[i % 16] : -1,
-                     ~0u,         0,           0};
+            r.ray = {p.origin.x,
+                     p.origin.y,
+                     p.origin.z,
+                     p.start[i % 16],
+                     p.x[i % 16],
+                     p.y[i % 16],
+                     p.z[i % 16],
+                     0,
+                     p.end[i % 16] > 0 ? p.end[i % 16] : -1,
+                     ~0u,
+                     0,
+                     0};
             r.hit.geomID = RTC_INVALID_GEOMETRY_ID;
             r.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
         }

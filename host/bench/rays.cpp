@@ -68,8 +68,8 @@ RaySet primary_rays(const Camera& camera, const Tiles& tiles) {
             reference::primary_ray(camera, tiles, glm::dvec2(pixel) + glm::dvec2(0.5));
         RayPacket& packet = set.packets[item / lanes];
         packet.origin = ray.origin;
-        put(packet, item % lanes,
-            {packet.origin, ray.direction, std::numeric_limits<float>::infinity()});
+        put(packet, item % lanes, {packet.origin, ray.direction, static_cast<float>(ray.end)});
+        packet.start[item % lanes] = static_cast<float>(ray.start);
     }
     return set;
 }

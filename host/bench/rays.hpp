@@ -12,11 +12,12 @@
 
 namespace manylight {
 
-/// 16 segments origin + t direction, 0 < t < end, world space; a lane whose end is not positive
+/// 16 segments origin + t direction, start < t < end, world space; a lane whose end is not positive
 /// holds none. Lane by lane, as in kernels/lib/rays.h.
 struct RayPacket {
     glm::vec3 origin;
     std::array<float, 16> x, y, z, end;
+    std::array<float, 16> start;  // 0 where any hit is asked for
 };
 
 /// Rays, and what is asked of them.

@@ -15,7 +15,8 @@ constexpr float infinity = std::numeric_limits<float>::infinity();
 
 reference::Ray ray_of(const RaySet& set, std::size_t i) {
     const RayPacket& p = set.packets[i / 16];
-    return {p.origin, glm::dvec3(p.x[i % 16], p.y[i % 16], p.z[i % 16]), p.end[i % 16]};
+    return {p.origin, glm::dvec3(p.x[i % 16], p.y[i % 16], p.z[i % 16]), p.end[i % 16],
+            p.start[i % 16]};
 }
 
 // Whether what a ray found is what the reference finds, or finds for a ray that single precision
@@ -55,26 +56,30 @@ struct DeviceTracer::Shared {
     Defines defines;
     Buffer<float4> origins;
     Buffer<float> rays;
+    Buffer<float> starts;
     Buffer<uint> triangles;
     std::size_t packets = 0;
 
     void prepare(const RaySet& set) {
         packets = set.packets.size();
-        std::vector<float4> starts;
+        std::vector<float4> sources;
+        std::vector<float> from;
         std::vector<float> lanes;
         lanes.reserve(64 * packets);
         for (const RayPacket& p : set.packets) {
-            starts.emplace_back(p.origin, 0);
+            sources.emplace_back(p.origin, 0);
+            from.insert(from.end(), p.start.begin(), p.start.end());
             for (const auto& row : {p.x, p.y, p.z, p.end})
                 lanes.insert(lanes.end(), row.begin(), row.end());
         }
-        origins = device.upload(starts);
+        origins = device.upload(sources);
+        starts = device.upload(from);
         rays = device.upload(lanes);
         if (!set.any_hit) triangles = device.allocate<uint>(16 * packets);
         arguments.set("origins", origins)
             .set("rays", rays)
             .set("packet_count", static_cast<uint>(packets));
-        if (!set.any_hit) arguments.set("triangles", triangles);
+        if (!set.any_hit) arguments.set("triangles", triangles).set("starts", starts);
         device.finish();
     }
 
@@ -92,7 +97,7 @@ struct DeviceTracer::Shared {
 };
 
 DeviceTracer::DeviceTracer(const Device& device, const DeviceScene& scene)
-    : shared_(new Shared{device, scene.arguments, scene.traversal, {}, {}, {}, 0}) {}
+    : shared_(new Shared{device, scene.arguments, scene.traversal, {}, {}, {}, {}, 0}) {}
 
 std::vector<Tracing> DeviceTracer::tracings(bool any_hit) const {
     std::vector<Tracing> out;

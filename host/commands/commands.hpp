@@ -15,6 +15,9 @@
 
 namespace manylight {
 
+/// Whether the camera has a light of its own; automatic: where nothing else shows (is_dark()).
+enum class Headlight { never, automatic, always };
+
 /// What every command that loads a scene and opens a device takes.
 struct SceneArguments {
     std::string file;
@@ -22,6 +25,7 @@ struct SceneArguments {
     std::optional<unsigned> emitter_points;
     std::optional<double> seconds;  // of the file's first animation; none: at rest
     double lamp_scale = 1;          // of punctual lights' intensities
+    Headlight headlight = Headlight::automatic;
     bool cull_back_faces = false;
     std::string variant;  // of materials; empty: the file's own
     MeshStorage storage = MeshStorage::automatic;
@@ -124,6 +128,7 @@ struct LoadedScene {
     Camera camera;
     unsigned width, height;
     unsigned emitter_points;  // as made; 0: area lights
+    bool headlight;           // whether the camera has one
 };
 
 /// Loads a scene, makes its emitters lights and finds the camera; prints the file's warnings.

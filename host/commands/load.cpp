@@ -58,8 +58,20 @@ LoadedScene load(const SceneArguments& arguments, bool quiet) {
     for (const std::string& warning : scene.warnings) warn("{}", warning);
     out.emitter_points = arguments.emitter_points.value_or(scene.emitter_points.value_or(0));
     add_emitters(scene, out.emitter_points);
-    if (scene.lights.empty()) warn("{}: the scene has no lights", scene.file);
-    out.view = find_view(scene, arguments.camera);
+    const bool sized = arguments.width > 0 && arguments.height > 0;
+    out.view =
+        find_view(scene, arguments.camera,
+                  sized ? static_cast<double>(arguments.width) / arguments.height : default_aspect);
+    const bool dark = is_dark(scene);
+    out.headlight =
+        arguments.headlight == Headlight::always ||
+        (arguments.headlight == Headlight::automatic && dark && scene.triangle_count() > 0);
+    if (out.headlight) add_headlight(scene, out.view);
+    if (dark && out.headlight)
+        warn("{}: nothing in it gives light; the camera's headlight does (--headlight never: none)",
+             scene.file);
+    else if (scene.lights.empty())
+        warn("{}: the scene has no lights", scene.file);
     choose_size(out, arguments, out.view.aspect);
     out.camera = make_camera(out.view, out.width, out.height, arguments.shift);
     return out;

@@ -93,6 +93,9 @@ const std::map<std::string, MeshStorage> mesh_storages = {{"auto", MeshStorage::
                                                           {"copied", MeshStorage::copied},
                                                           {"shared", MeshStorage::shared}};
 
+const std::map<std::string, Headlight> headlights = {
+    {"never", Headlight::never}, {"auto", Headlight::automatic}, {"always", Headlight::always}};
+
 const std::map<std::string, unsigned> device_forms = {
     {"auto", 0}, {"gpu", 1}, {"4", 4}, {"8", 8}, {"16", 16}};
 
@@ -198,6 +201,9 @@ void add_view(CLI::App& command, SceneArguments& scene, unsigned height = 512) {
                     "multiply what point, spot and directional lights emit; 0.00146413 takes back "
                     "the 683 lm/W of Blender's export, which emissive surfaces do not get")
         ->check(number(1e-12, 1e12));
+    add_choice(command, "--headlight", scene.headlight, headlights,
+               "a light at the camera: never, always or auto (where nothing in the file gives "
+               "light or shows without)");
     command.add_flag("--cull-back-faces", scene.cull_back_faces,
                      "no ray meets the back of what is not doubleSided, as in viewers of glTF "
                      "(default: all is seen from both sides, as in Blender)");

@@ -113,6 +113,7 @@ OptionList options_of(const RenderArguments& arguments, const RenderOptions& opt
     SceneArguments scene = arguments.scene;
     if (scene.camera.empty() && !loaded.scene.views.empty()) scene.camera = loaded.view.name;
     scene.emitter_points = loaded.emitter_points;
+    scene.headlight = loaded.headlight ? Headlight::always : Headlight::never;
     OptionList list = view_options(scene);
     for (auto& option : image_options(options)) list.push_back(std::move(option));
     if (result.spp == std::floor(result.spp))

@@ -26,9 +26,13 @@ OptionList view_options(const SceneArguments& scene) {
     const char* storage = scene.storage == MeshStorage::shared   ? "shared"
                           : scene.storage == MeshStorage::copied ? "copied"
                                                                  : "auto";
+    const char* headlight = scene.headlight == Headlight::always  ? "always"
+                            : scene.headlight == Headlight::never ? "never"
+                                                                  : "auto";
     OptionList list = {{"file", scene.file},
                        {"shift", fmt::format("{},{}", scene.shift.first, scene.shift.second)},
                        {"lamp-scale", scene.lamp_scale},
+                       {"headlight", headlight},
                        {"cull-back-faces", scene.cull_back_faces},
                        {"instances", storage}};
     if (!scene.camera.empty()) list.emplace_back("camera", scene.camera);

@@ -173,10 +173,10 @@ void check_json(const VerifyArguments& arguments) {
 void refuse_without_file(const SceneArguments& scene) {
     if (!scene.camera.empty() || !scene.variant.empty() || scene.emitter_points || scene.seconds ||
         scene.lamp_scale != 1 || scene.cull_back_faces || scene.shift != std::pair(0.0, 0.0) ||
-        scene.storage != MeshStorage::automatic)
+        scene.storage != MeshStorage::automatic || scene.headlight != Headlight::automatic)
         throw InputError(
-            "verify: --camera, --variant, --emitter-points, --at, --lamp-scale, --cull-back-faces, "
-            "--shift and --instances go with a file");
+            "verify: --camera, --variant, --emitter-points, --at, --lamp-scale, --headlight, "
+            "--cull-back-faces, --shift and --instances go with a file");
 }
 
 }  // namespace

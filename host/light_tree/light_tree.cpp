@@ -14,7 +14,9 @@ namespace {
 constexpr int bin_count = 12;
 constexpr int deepest_split = 64;         // below, halves: bounds the depth whatever the input
 constexpr std::size_t task_size = 8'192;  // lights worth a thread of their own
-constexpr float pi = glm::pi<float>();
+constexpr double pi = glm::pi<double>();
+// By which cones are wider than they need be, for their axes are rounded, radians.
+constexpr double cone_margin = 1e-6;
 
 // What the splits look at.
 struct Reference {
@@ -34,13 +36,26 @@ bool has_axis(const Light& light) {
     return kind == LIGHT_SPOT || kind == LIGHT_ORIENTED || (has_area(light) && light.axis.w == 0);
 }
 
-glm::vec3 area_normal(const Light& light) {
-    return glm::cross(glm::vec3(light.axis), glm::vec3(light.edge));
+// 1 - cos(angle), and back: unlike the cosine, it tells small angles apart.
+float versine_of(double angle) {
+    const double s = std::sin(angle / 2);
+    return static_cast<float>(2 * s * s);
+}
+
+double angle_of(float versine) { return 2 * std::asin(std::sqrt(std::min(versine / 2.0, 1.0))); }
+
+double angle_between(const glm::dvec3& a, const glm::dvec3& b) {
+    return std::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b));
+}
+
+// As long as the parallelogram is large; single precision would lose the square of a small one.
+glm::dvec3 area_normal(const Light& light) {
+    return glm::cross(glm::dvec3(light.axis), glm::dvec3(light.edge));
 }
 
 glm::vec3 axis_of(const Light& light) {
     if (!has_axis(light)) return glm::vec3(0);
-    return has_area(light) ? glm::normalize(area_normal(light)) : glm::vec3(light.axis);
+    return has_area(light) ? glm::vec3(glm::normalize(area_normal(light))) : glm::vec3(light.axis);
 }
 
 // Of an area light: where it lies.
@@ -55,7 +70,7 @@ Extent extent_of(const Light& light) {
     const glm::vec3 p(light.position);
     const glm::vec3 u(light.axis);
     const glm::vec3 v(light.edge);
-    const float area = glm::length(area_normal(light));
+    const auto area = static_cast<float>(glm::length(area_normal(light)));
     const float squares = glm::dot(u, u) + glm::dot(v, v);
     if (static_cast<LightKind>(light.position.w) == LIGHT_QUAD)
         return {{p, p + u, p + v, p + u + v}, p + (u + v) / 2.f, area, squares / 12};
@@ -97,36 +112,36 @@ LightNode leaf_of(const Light& light, uint index) {
     const glm::vec3 axis = axis_of(light);
     const bool two_sided = has_area(light) && light.axis.w != 0;
     node.centre = float4(centre, mean_square);
-    node.axis = two_sided ? float4(glm::normalize(area_normal(light)), two_sides)
+    node.axis = two_sided ? float4(glm::vec3(glm::normalize(area_normal(light))), two_sides)
                           : float4(axis, has_axis(light) ? 0 : 1);
     node.intensity = float4(intensity, radius);
-    float emitting = -1;  // cosine of the largest angle off the axis
-    if (kind == LIGHT_SPOT) emitting = std::clamp(-light.edge.y / light.edge.x, 0.f, 1.f);
-    if (has_axis(light) && kind != LIGHT_SPOT) emitting = 0;
-    node.lower = float4(bounds.lower, has_axis(light) || NODE_IS_INFINITE(node) ? 1 : -1);
+    float emitting = 2;
+    if (has_axis(light)) emitting = 1;
+    if (kind == LIGHT_SPOT)
+        emitting = std::min(versine_of(angle_of(light.edge.y) + cone_margin), 1.f);
+    node.lower = float4(bounds.lower, has_axis(light) || NODE_IS_INFINITE(node) ? 0 : 2);
     node.upper = float4(bounds.upper, emitting);
     node.cone = float4(has_axis(light) ? axis : glm::vec3(0, 0, 1), light.emission.w);
     return node;
 }
 
-// The cone that holds two cones, each an axis and the cosine of its half angle (pbrt-v4,
+// The cone that holds two cones, each an axis and 1 - the cosine of its half angle (pbrt-v4,
 // DirectionCone's Union).
 float4 join_cones(const float4& a, const float4& b) {
-    const float angle_a = std::acos(std::clamp(a.w, -1.f, 1.f));
-    const float angle_b = std::acos(std::clamp(b.w, -1.f, 1.f));
-    const glm::vec3 axis_a(a);
-    const glm::vec3 axis_b(b);
-    const float between = std::acos(std::clamp(glm::dot(axis_a, axis_b), -1.f, 1.f));
+    const double angle_a = angle_of(a.w);
+    const double angle_b = angle_of(b.w);
+    const glm::dvec3 axis_a{glm::vec3(a)};
+    const glm::dvec3 axis_b{glm::vec3(b)};
+    const double between = angle_between(axis_a, axis_b);
     if (std::min(between + angle_b, pi) <= angle_a) return a;
     if (std::min(between + angle_a, pi) <= angle_b) return b;
-    const float angle = (angle_a + between + angle_b) / 2;
-    const glm::vec3 turn = glm::cross(axis_a, axis_b);
-    if (angle >= pi || glm::dot(turn, turn) == 0) return {0, 0, 1, -1};
-    const float by = angle - angle_a;
-    const glm::vec3 side = glm::normalize(glm::cross(turn, axis_a));
-    const glm::vec3 axis = glm::normalize(std::cos(by) * axis_a + std::sin(by) * side);
-    // Rounding must not leave an axis outside.
-    return {axis, std::max(std::cos(angle) - 1e-5f, -1.f)};
+    const double angle = (angle_a + between + angle_b) / 2 + cone_margin;
+    const glm::dvec3 turn = glm::cross(axis_a, axis_b);
+    if (angle >= pi || glm::dot(turn, turn) == 0) return {0, 0, 1, 2};
+    const double by = angle - angle_a;
+    const glm::dvec3 side = glm::normalize(glm::cross(turn, axis_a));
+    const glm::dvec3 axis = glm::normalize(std::cos(by) * axis_a + std::sin(by) * side);
+    return {glm::vec3(axis), versine_of(angle)};
 }
 
 // The mean emission axis of the node's lights, and in w the share of those without one.
@@ -140,12 +155,10 @@ float phi(const LightNode& node) { return luminance(glm::vec3(node.intensity)); 
 // See LightNode::reach; from the cone of axes and the largest angle off any of them.
 float reach_of(const LightNode& node) {
     const glm::vec3 axis(node.axis);
-    const float length = glm::length(axis);
-    if (node.upper.w <= 0 || length == 0) return -1;
-    const float off_cone = glm::dot(axis / length, glm::vec3(node.cone));
-    const float angle = std::acos(std::clamp(off_cone, -1.f, 1.f)) + std::acos(node.lower.w) +
-                        std::acos(node.upper.w);
-    return angle < pi ? std::max(std::cos(angle) - 1e-4f, -1.f) : -1;
+    if (node.upper.w >= 1 || axis == glm::vec3(0)) return -1;
+    const double angle = angle_between(glm::dvec3(axis), glm::dvec3(glm::vec3(node.cone))) +
+                         angle_of(node.lower.w) + angle_of(node.upper.w);
+    return angle < pi ? std::max(static_cast<float>(std::cos(angle)) - 1e-4f, -1.f) : -1;
 }
 
 LightNode join(const LightNode& a, const LightNode& b) {
@@ -173,7 +186,7 @@ LightNode join(const LightNode& a, const LightNode& b) {
     const float4 cone = join_cones(float4(glm::vec3(a.cone), a.lower.w),  //
                                    float4(glm::vec3(b.cone), b.lower.w));
     node.lower = float4(lower, cone.w);
-    node.upper = float4(upper, std::min(a.upper.w, b.upper.w));
+    node.upper = float4(upper, std::max(a.upper.w, b.upper.w));
     node.cone = float4(glm::vec3(cone), a.cone.w + b.cone.w);
     node.reach = reach_of(node);
     return node;

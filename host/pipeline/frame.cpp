@@ -82,7 +82,7 @@ uint Frame::samples_of(uint i) const {
     return sampler_.all_lights || lights == 0 ? lights : options_.samples_of(i);
 }
 
-// Pixel samples count by their light samples.
+// Pixel samples count by their light samples, and alike where there are no lights.
 float Frame::weight_of(uint i) const {
     return static_cast<float>(std::max(samples_of(i), 1u)) /
            static_cast<float>(std::max(samples_of(0), 1u));

@@ -58,8 +58,8 @@ double leaf_emission(const LightNode& node, const Light& light, const glm::dvec3
     double emission = 1;
     if (light.axis.w > 0) emission = std::clamp(1 - std::pow(distance / light.axis.w, 4), 0.0, 1.0);
     if (node.kind == LIGHT_SPOT) {
-        const double cosine = glm::dot(-towards, glm::dvec3(light.axis));
-        emission *= std::pow(std::clamp(cosine * light.edge.x + light.edge.y, 0.0, 1.0), 2);
+        const double versine = 1 - glm::dot(-towards, glm::normalize(glm::dvec3(light.axis)));
+        emission *= std::pow(std::clamp((light.edge.y - versine) * light.edge.x, 0.0, 1.0), 2);
     }
     return emission;
 }

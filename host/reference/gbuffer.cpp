@@ -23,6 +23,8 @@ Ray primary_ray(const Camera& camera, const Tiles& tiles, const glm::dvec2& poin
     const glm::dvec3 changes[] = {2.0 / tiles.width * glm::dvec3(camera.right),
                                   -2.0 / tiles.height * glm::dvec3(camera.up)};
     Ray ray{origin, forward};
+    ray.start = camera.right.w;
+    if (camera.up.w > 0) ray.end = camera.up.w;
     if (camera.forward.w != 0) {
         ray.origin += offset;
         for (int k = 0; k < 2; ++k) ray.origin_change[k] = changes[k];
@@ -30,6 +32,9 @@ Ray primary_ray(const Camera& camera, const Tiles& tiles, const glm::dvec2& poin
     }
     const double length = glm::length(forward + offset);
     ray.direction = (forward + offset) / length;
+    // Planes across the view, to which `forward + offset` is 1 long.
+    ray.start *= length;
+    ray.end *= length;
     for (int k = 0; k < 2; ++k)
         ray.direction_change[k] =
             (changes[k] - glm::dot(changes[k], ray.direction) * ray.direction) / length;

@@ -26,12 +26,13 @@ double importance(const LightNode& node, const Surface& surface) {
     const auto angle = [](double cosine) { return std::acos(std::clamp(cosine, -1.0, 1.0)); };
     const double by_bounds = std::asin(radius / distance);
     double emission = 1;
-    if (node.upper.w >= 0) {
+    if (node.upper.w <= 1) {
+        const glm::dvec3 axis(node.cone);
         const double off_axis =
-            std::max(angle(glm::dot(glm::dvec3(node.cone), -towards / distance)) -
-                         angle(node.lower.w) - by_bounds,
+            std::max(std::atan2(glm::length(glm::cross(axis, towards)), -glm::dot(axis, towards)) -
+                         angle(1 - double{node.lower.w}) - by_bounds,
                      0.0);
-        if (off_axis > 0 && std::cos(off_axis) <= node.upper.w) return 0;
+        if (off_axis > 0 && 1 - std::cos(off_axis) >= node.upper.w) return 0;
         emission = std::cos(off_axis);
     }
     const double incidence = std::max(angle(glm::dot(normal, towards / distance)) - by_bounds, 0.0);

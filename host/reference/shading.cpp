@@ -26,7 +26,7 @@ double smith_visibility(double alpha, double n_l, double n_v) {
 // By how much rounding may have changed what a light's emission comes from.
 struct LightShift {
     glm::dvec3 normal = glm::dvec3(0);  // of an area: of the cross product of its sides, m2
-    double cosine = 0;                  // of a spot: between its axis and the direction
+    double versine = 0;                 // of a spot: 1 - the cosine to its axis
 };
 
 struct Emission {
@@ -56,10 +56,15 @@ Emission punctual(const Light& light, const glm::dvec3& position) {
     return e;
 }
 
+// Of the angle at which a spot shines.
+double cosine_to_axis(const Light& light, const Emission& e) {
+    return glm::dot(-e.towards, glm::normalize(glm::dvec3(light.axis)));
+}
+
 Emission spot(const Light& light, const glm::dvec3& position, const LightShift& shift) {
     Emission e = punctual(light, position);
-    const double cosine = glm::dot(-e.towards, glm::dvec3(light.axis)) + shift.cosine;
-    const double cone = std::clamp(cosine * light.edge.x + light.edge.y, 0.0, 1.0);
+    const double versine = 1 - cosine_to_axis(light, e) + shift.versine;
+    const double cone = std::clamp((light.edge.y - versine) * light.edge.x, 0.0, 1.0);
     e.light *= cone * cone;
     return e;
 }
@@ -152,6 +157,13 @@ Emission emission(const Light& light, const glm::dvec3& position, const glm::dve
     return {};
 }
 
+// Of 1 - the cosine to a spot's axis, sin^2 / (1 + cos): the sine is a cross product, off by 4
+// units, and 4 units of the whole.
+double versine_rounding(double cosine) {
+    const double sine = std::sqrt(std::max(1 - cosine * cosine, 0.0));
+    return 4 * epsilon * (2 * sine / (1 + std::max(cosine, 0.0)) + (1 - cosine));
+}
+
 Unshadowed shade(const glm::dvec3& position, const Surface& surface, const Material& material,
                  const Camera& camera, const Light& light, const glm::dvec2& u,
                  const LightShift& shift = {}) {
@@ -242,7 +254,7 @@ double rounding_slack(const Surface& surface, const Material& material, const Ca
     const auto change = [&](const glm::dvec3& step, const LightShift& light_shift) {
         double most = 0;
         for (const double sign : {-1.0, 1.0}) {
-            const LightShift to{sign * light_shift.normal, sign * light_shift.cosine};
+            const LightShift to{sign * light_shift.normal, sign * light_shift.versine};
             const glm::dvec3 value =
                 shade(position + sign * step, surface, material, camera, light, u, to).value;
             most = std::max(most, glm::length(value - centre));
@@ -257,7 +269,7 @@ double rounding_slack(const Surface& surface, const Material& material, const Ca
         if (has_area(light)) slack += change(glm::dvec3(0), {normal_rounding(light) * along, 0});
     }
     if (static_cast<LightKind>(light.position.w) == LIGHT_SPOT)
-        slack += change(glm::dvec3(0), {glm::dvec3(0), 4 * epsilon});
+        slack += change(glm::dvec3(0), {glm::dvec3(0), versine_rounding(cosine_to_axis(light, e))});
     return slack;
 }
 

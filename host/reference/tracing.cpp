@@ -86,7 +86,7 @@ void Tracer::test(uint triangle, const Ray& ray, std::optional<Hit>& best) const
     if (v < 0 || u + v > 1) return;
     const double t = glm::dot(e2, q) / determinant;
     const Hit hit{triangle, t, u, v};
-    if (t > 0 && t < (best ? best->t : ray.end) && is_there(ray, hit)) best = hit;
+    if (t > ray.start && t < (best ? best->t : ray.end) && is_there(ray, hit)) best = hit;
 }
 
 // What is partly there is so by chance, but for one ray always alike.
@@ -189,7 +189,8 @@ std::optional<Tracer::RoundedHit> Tracer::meet_plane(uint triangle, const Ray& r
 
 std::optional<Hit> Tracer::hit_near(uint triangle, const Ray& ray) const {
     const auto met = meet_plane(triangle, ray);
-    if (!met || met->hit.t <= 0 || met->hit.t >= ray.end || met->inside() < -met->beyond) return {};
+    if (!met || met->hit.t <= ray.start || met->hit.t >= ray.end || met->inside() < -met->beyond)
+        return {};
     return is_there(ray, met->hit) ? std::optional(met->hit) : std::nullopt;
 }
 

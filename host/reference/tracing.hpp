@@ -11,11 +11,12 @@
 
 namespace manylight::reference {
 
-/// A segment origin + t direction, 0 < t < end, in double precision.
+/// A segment origin + t direction, start < t < end, in double precision.
 struct Ray {
     glm::dvec3 origin;
     glm::dvec3 direction;
     double end = std::numeric_limits<double>::infinity();
+    double start = 0;
     // From a pixel to its right and to its lower neighbour, where the ray is a pixel's.
     glm::dvec3 origin_change[2] = {glm::dvec3(0), glm::dvec3(0)};
     glm::dvec3 direction_change[2] = {glm::dvec3(0), glm::dvec3(0)};

@@ -30,7 +30,7 @@ struct Shape {
     float offset;             // as an emitter's
     std::size_t emitter;      // of the shape's radiance
     std::size_t second;       // the other of a parallelogram's emitters
-    bool textured = false;
+    bool varies = false;
 };
 
 // An edge of an emitter, as it winds; a neighbour that faces the same way has its reverse.
@@ -147,7 +147,7 @@ std::vector<Shape> find_shapes(const std::vector<Emitter>& emitters) {
     for (std::size_t i = 0; i < emitters.size(); ++i) {
         const Emitter& e = emitters[i];
         shapes.push_back(
-            {LIGHT_TRIANGLE, e.vertices[0], e.edge1(), e.edge2(), e.offset, i, i, e.textured});
+            {LIGHT_TRIANGLE, e.vertices[0], e.edge1(), e.edge2(), e.offset, i, i, e.varies});
     }
     for (const bool diagonals : {true, false}) {
         EdgeTable table(emitters);
@@ -163,7 +163,7 @@ std::vector<Shape> find_shapes(const std::vector<Emitter>& emitters) {
                 if (!is_parallelogram(joined, emitters[other], j)) continue;
                 joined.emitter = other;
                 joined.second = i;
-                joined.textured = emitters[i].textured;
+                joined.varies = emitters[i].varies || emitters[other].varies;
                 shapes[other] = joined;
                 shapes[i].kind = gone;
             }
@@ -184,7 +184,7 @@ unsigned parts_of(double length, double side) {
 // The numbers of cells along u and v; there are as many as their product. A triangle is cut to four
 // and these again, until the longest edge is short enough.
 glm::uvec2 cells_along(const Shape& s, double side) {
-    if (s.textured) side /= textured_cells;
+    if (s.varies) side /= varied_cells;
     if (s.kind == LIGHT_QUAD)
         return {parts_of(glm::length(s.u), side), parts_of(glm::length(s.v), side)};
     const double longest = std::max({glm::length(s.u), glm::length(s.v), glm::length(s.u - s.v)});
@@ -220,7 +220,7 @@ double inside(const Emitter& e, const glm::dvec3& p) {
     return std::min({w.x, w.y, 1 - w.x - w.y});
 }
 
-// The radiance of a cell of a textured shape's emitters.
+// The radiance of a cell of a shape's emitters, over which it varies.
 glm::vec3 radiance_of(const Light& cell, const Emitter& first, const Emitter& second,
                       const RadianceOfPart& radiance_of_part) {
     const bool triangle = static_cast<LightKind>(cell.position.w) == LIGHT_TRIANGLE;
@@ -229,10 +229,8 @@ glm::vec3 radiance_of(const Light& cell, const Emitter& first, const Emitter& se
     const glm::dvec3 v(glm::vec3(cell.edge));
     const glm::dvec3 centre = corner + (u + v) / (triangle ? 3.0 : 2.0);
     const Emitter& e = inside(first, centre) >= inside(second, centre) ? first : second;
-    const glm::dmat2 edges(glm::dvec2(e.at[1] - e.at[0]), glm::dvec2(e.at[2] - e.at[0]));
-    return radiance_of_part(
-        e, glm::dvec2(e.at[0]) + edges * weights_of(e, corner - glm::dvec3(e.vertices[0])),
-        edges * weights_of(e, u), edges * weights_of(e, v), triangle);
+    return radiance_of_part(e, weights_of(e, corner - glm::dvec3(e.vertices[0])), weights_of(e, u),
+                            weights_of(e, v), triangle);
 }
 
 void add_cells(AreaLights& out, const Shape& s, const std::vector<Emitter>& emitters, double side,
@@ -244,7 +242,7 @@ void add_cells(AreaLights& out, const Shape& s, const std::vector<Emitter>& emit
     const auto add = [&](const glm::dvec3& corner, double sign) {
         Light cell{float4(corner, s.kind), float4(sign * u, e.both_sides ? 1 : 0),
                    float4(sign * v, s.offset), float4(e.radiance, 0)};
-        if (s.textured)
+        if (s.varies)
             cell.emission = float4(radiance_of(cell, e, emitters[s.second], radiance_of_part), 0);
         if (cell.emission != float4(0)) out.lights.push_back(cell);
     };

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/gtc/constants.hpp>
+#include <optional>
 
 #include "scene/area_lights.hpp"
 #include "scene/textures.hpp"
@@ -10,33 +11,119 @@
 namespace manylight {
 namespace {
 
-const TextureMap* emission_map(const Scene& scene, const Emitter& e) {
-    if (scene.maps.empty()) return nullptr;
-    const TextureMap& map = scene.maps[MAP_KIND_COUNT * e.material + MAP_EMISSION];
-    return map.texture == NO_TEXTURE ? nullptr : &map;
-}
+// A triangle of an emitter on one of its textures, where its material has that.
+class TextureOn {
+  public:
+    TextureOn(const Scene& scene, const Emitter& e, MapKind kind) {
+        if (!has_map(scene, e.material, kind)) return;
+        const TextureMap& map = scene.maps[MAP_KIND_COUNT * e.material + kind];
+        texture_ = &scene.textures[map.texture];
+        for (int k = 0; k < 3; ++k) {
+            const std::uint32_t vertex = scene.indices[3 * std::size_t{e.triangle} + k];
+            const glm::vec3 st(scene.coordinates[map.set][vertex], 1);
+            at_[k] = {glm::dot(glm::vec3(map.u), st), glm::dot(glm::vec3(map.v), st)};
+        }
+    }
+    [[nodiscard]] const Texture* texture() const { return texture_; }
+    // Coordinates of a point, and of a vector, by its weights of vertices 1 and 2.
+    [[nodiscard]] glm::dvec2 point(glm::dvec2 weights) const {
+        return glm::dvec2(at_[0]) + vector(weights);
+    }
+    [[nodiscard]] glm::dvec2 vector(glm::dvec2 weights) const {
+        return weights.x * glm::dvec2(at_[1] - at_[0]) + weights.y * glm::dvec2(at_[2] - at_[0]);
+    }
+
+  private:
+    const Texture* texture_ = nullptr;
+    glm::vec2 at_[3] = {};
+};
+
+// How much of an emitter is there (kernels/lib/alpha.h).
+class Coverage {
+  public:
+    Coverage(const Scene& scene, const Emitter& e)
+        : scene_(scene),
+          cutoff_(scene.materials[e.material].cutoff),
+          base_(scene, e, MAP_BASE_COLOR) {
+        for (int k = 0; k < 3; ++k) {
+            const std::uint32_t vertex = scene.indices[3 * std::size_t{e.triangle} + k];
+            alphas_[k] = scene.materials[e.material].alpha *
+                         (scene.colors.empty() ? 1 : scene.colors[vertex].a);
+        }
+    }
+    // Whether it is not the same everywhere.
+    [[nodiscard]] bool varies() const {
+        return cutoff_ != 0 && (base_.texture() || !scene_.colors.empty());
+    }
+    // The texels of the finest level along a vector.
+    [[nodiscard]] double texels(glm::dvec2 v) const {
+        if (!base_.texture()) return 0;
+        return glm::length(base_.vector(v) *
+                           glm::dvec2(base_.texture()->width, base_.texture()->height));
+    }
+    [[nodiscard]] double at(glm::dvec2 weights) const {
+        if (cutoff_ == 0) return 1;
+        double alpha = alphas_[0] + weights.x * (alphas_[1] - alphas_[0]) +
+                       weights.y * (alphas_[2] - alphas_[0]);
+        if (base_.texture())
+            alpha *= finest_texel(scene_, *base_.texture(), base_.point(weights)).a;
+        if (cutoff_ > 0) return alpha >= cutoff_ ? 1 : 0;
+        return std::clamp(alpha, 0.0, 1.0);
+    }
+
+  private:
+    const Scene& scene_;
+    double cutoff_;
+    TextureOn base_;
+    double alphas_[3];
+};
+
+// Points along a side of a part, over which it is averaged; as many as texels where these say what
+// is there.
+constexpr double least_points = 16;
+constexpr double most_points = 128;
 
 glm::vec3 radiance_of_part(const Scene& scene, const Emitter& e, glm::dvec2 corner, glm::dvec2 u,
                            glm::dvec2 v, bool triangle) {
-    const Texture& texture = scene.textures[emission_map(scene, e)->texture];
+    const TextureOn emission(scene, e, MAP_EMISSION);
+    const Coverage coverage(scene, e);
+    double points = least_points;
+    if (coverage.varies())
+        points = std::clamp(std::ceil(std::max(coverage.texels(u), coverage.texels(v))),
+                            least_points, most_points);
+    const int side = static_cast<int>(points);
+    std::optional<TextureLevel> texels;
+    if (emission.texture())
+        texels.emplace(scene, *emission.texture(), emission.vector(u) / static_cast<double>(side),
+                       emission.vector(v) / static_cast<double>(side));
+    glm::dvec3 sum(0);
+    for (int j = 0; j < side; ++j)
+        for (int i = 0; i < side; ++i) {
+            glm::dvec2 at = (glm::dvec2(i, j) + 0.5) / static_cast<double>(side);
+            // The half beyond the triangle, turned onto it.
+            if (triangle && at.x + at.y > 1) at = 1.0 - at;
+            const glm::dvec2 weights = corner + at.x * u + at.y * v;
+            const double there = coverage.at(weights);
+            if (there == 0) continue;
+            sum += there * (texels ? texels->at(emission.point(weights)) : glm::dvec3(1));
+        }
     return glm::vec3(scene.materials[e.material].emission) *
-           glm::vec3(mean_of_part(scene, texture, corner, u, v, triangle));
+           glm::vec3(sum / static_cast<double>(side * side));
 }
 
-// A triangle of less, m2, gives no light that single precision could tell.
-constexpr double least_area = 1e-18;
+// Whether an emitter's radiance varies over it, and the mean. Returns whether any of it may shine.
+bool find_radiance(const Scene& scene, Emitter& e) {
+    const Coverage coverage(scene, e);
+    e.varies = has_map(scene, e.material, MAP_EMISSION) || coverage.varies();
+    e.radiance = e.varies ? radiance_of_part(scene, e, {0, 0}, {1, 0}, {0, 1}, true)
+                          : glm::vec3(scene.materials[e.material].emission) *
+                                static_cast<float>(coverage.at({0, 0}));
+    return e.radiance != glm::vec3(0) || coverage.varies();
+}
 
-// Where an emitter is on the texture of its emission, and its mean radiance.
-void find_texture(const Scene& scene, Emitter& e) {
-    const TextureMap* map = emission_map(scene, e);
-    if (!map) return;
-    e.textured = true;
-    for (int k = 0; k < 3; ++k) {
-        const std::uint32_t vertex = scene.indices[3 * std::size_t{e.triangle} + k];
-        const glm::vec3 st(scene.coordinates[map->set][vertex], 1);
-        e.at[k] = {glm::dot(glm::vec3(map->u), st), glm::dot(glm::vec3(map->v), st)};
-    }
-    e.radiance = radiance_of_part(scene, e, e.at[0], e.at[1] - e.at[0], e.at[2] - e.at[0], true);
+// As long as the parallelogram is large; single precision would lose the square of a small one.
+glm::dvec3 face_of(const Emitter& e) {
+    return glm::cross(glm::dvec3(e.edge1()), glm::dvec3(e.edge2()));
 }
 
 std::vector<Emitter> find_emitters(const Scene& scene) {
@@ -53,11 +140,10 @@ std::vector<Emitter> find_emitters(const Scene& scene) {
             e.vertices[corner] = scene.vertices[scene.indices[3 * t + corner]];
             extent = glm::max(extent, glm::abs(e.vertices[corner]));
         }
-        const glm::dvec3 face(glm::cross(e.edge1(), e.edge2()));
+        const glm::dvec3 face(face_of(e));
         const double area = glm::length(face) / 2;
-        if (!(area > least_area)) continue;
-        find_texture(scene, e);
-        if (e.radiance == glm::vec3(0)) continue;
+        if (!(area > 0)) continue;
+        if (!find_radiance(scene, e)) continue;
         e.offset = static_cast<float>(OFFSET_SCALE *
                                       glm::dot(glm::abs(face) / (2 * area), glm::dvec3(extent)));
         e.power = glm::pi<double>() * area * luminance(e.radiance) * (e.both_sides ? 2 : 1);
@@ -70,7 +156,7 @@ std::vector<Emitter> find_emitters(const Scene& scene) {
 Light oriented_point(const Emitter& e, glm::vec2 u, bool back, double power) {
     if (u.x + u.y > 1) u = 1.f - u;
     const glm::vec3 color = e.radiance / luminance(e.radiance);
-    const glm::vec3 normal = glm::normalize(glm::cross(e.edge1(), e.edge2()));
+    const glm::vec3 normal(glm::normalize(face_of(e)));
     return {float4(e.vertices[0] + u.x * e.edge1() + u.y * e.edge2(), LIGHT_ORIENTED),
             float4(back ? -normal : normal, 0), float4(0, 0, 0, e.offset),
             float4(color * static_cast<float>(power / glm::pi<double>()), 0)};
@@ -102,46 +188,33 @@ std::vector<Light> make_points(const std::vector<Emitter>& emitters, unsigned po
 
 // The area of all emitting sides of the parallelogram of a light's axis and edge, m2.
 float parallelogram(const Light& light) {
-    const float area = glm::length(glm::cross(glm::vec3(light.axis), glm::vec3(light.edge)));
-    return area * (light.axis.w != 0 ? 2.f : 1.f);
+    const double area = glm::length(glm::cross(glm::dvec3(light.axis), glm::dvec3(light.edge)));
+    return static_cast<float>(area * (light.axis.w != 0 ? 2 : 1));
 }
 
-// Fills emission.w of every light; see shared/light.h.
-void set_powers(std::vector<Light>& lights, const Bounds& bounds) {
+// What emission.w of a light is; see shared/light.h.
+float power_of(const Light& light, const Bounds& bounds) {
     constexpr float pi = glm::pi<float>();
-    for (Light& light : lights) {
-        const float brightness = luminance(light.emission);
-        float& power = light.emission.w;
-        switch (static_cast<LightKind>(light.position.w)) {
-            case LIGHT_POINT:
-                power = 4 * pi * brightness;
-                break;
-            case LIGHT_SPOT: {
-                // The integral of clamp(c scale + offset)^2 over the sphere, c the cosine.
-                const float scale = light.edge.x;
-                const float outer = -light.edge.y / scale;
-                const float inner = std::min((1 - light.edge.y) / scale, 1.f);
-                const float at_inner = inner * scale + light.edge.y;
-                power =
-                    2 * pi * brightness * (1 - inner + (inner - outer) * at_inner * at_inner / 3);
-                break;
-            }
-            case LIGHT_DIRECTIONAL:
-                power = brightness * pi * bounds.radius() * bounds.radius();
-                break;
-            case LIGHT_ORIENTED:
-                power = pi * brightness;
-                break;
-            case LIGHT_TRIANGLE:
-                power = pi * brightness * parallelogram(light) / 2;
-                break;
-            case LIGHT_QUAD:
-                power = pi * brightness * parallelogram(light);
-                break;
-            case light_kind_count:
-                break;
-        }
+    const float brightness = luminance(light.emission);
+    switch (static_cast<LightKind>(light.position.w)) {
+        case LIGHT_POINT:
+            return 4 * pi * brightness;
+        case LIGHT_SPOT:
+            // Over the sphere, its 1 - cosine is uniform; the mean of the square where it fades is
+            // a third.
+            return 2 * pi * brightness * std::max(light.edge.y - 2 / (3 * light.edge.x), 0.f);
+        case LIGHT_DIRECTIONAL:
+            return brightness * pi * bounds.radius() * bounds.radius();
+        case LIGHT_ORIENTED:
+            return pi * brightness;
+        case LIGHT_TRIANGLE:
+            return pi * brightness * parallelogram(light) / 2;
+        case LIGHT_QUAD:
+            return pi * brightness * parallelogram(light);
+        case light_kind_count:
+            break;
     }
+    return 0;
 }
 
 }  // namespace
@@ -157,12 +230,45 @@ void add_emitters(Scene& scene, unsigned points) {
             [&scene](const Emitter& e, glm::dvec2 corner, glm::dvec2 u, glm::dvec2 v,
                      bool triangle) { return radiance_of_part(scene, e, corner, u, v, triangle); });
         lights = std::move(made.lights);
-        scene.cell_areas.assign(scene.triangle_count(), 0.f);
-        for (std::size_t i = 0; i < emitters.size(); ++i)
+        if (!lights.empty()) scene.cell_areas.assign(scene.triangle_count(), 0.f);
+        for (std::size_t i = 0; i < emitters.size() && !lights.empty(); ++i)
             scene.cell_areas[emitters[i].triangle] = made.cell_areas[i];
     }
     scene.lights.insert(scene.lights.end(), lights.begin(), lights.end());
-    set_powers(scene.lights, scene.bounds());
+    const Bounds bounds = scene.bounds();
+    for (Light& light : scene.lights) light.emission.w = power_of(light, bounds);
+}
+
+bool is_dark(const Scene& scene) {
+    return scene.lights.empty() &&
+           std::ranges::none_of(scene.triangle_materials, [&](std::uint32_t material) {
+               const Material& m = scene.materials[material];
+               return m.unlit != 0 && glm::vec3(m.emission) != glm::vec3(0);
+           });
+}
+
+void add_headlight(Scene& scene, const View& view) {
+    constexpr double pi = glm::pi<double>();
+    constexpr double brightest = 1e15;  // cd, as of a file's own lights
+    const Bounds bounds = scene.bounds();
+    const glm::dvec3 forward(-view.to_world[2]);
+    Light light{};
+    if (view.orthographic) {
+        light.position.w = LIGHT_DIRECTIONAL;
+        light.axis = float4(glm::vec3(forward), 0);
+        light.emission = float4(glm::vec3(static_cast<float>(pi)), 0);
+    } else {
+        const glm::dvec3 place = glm::dvec3(view.to_world[3]) + view.near * forward;
+        const double distance = std::max(glm::distance(place, glm::dvec3(bounds.centre())),
+                                         static_cast<double>(bounds.radius()));
+        const double intensity = std::min(pi * distance * distance, brightest);
+        light.position = float4(glm::vec3(place), LIGHT_POINT);
+        light.emission = float4(glm::vec3(static_cast<float>(intensity)), 0);
+    }
+    light.emission.w = power_of(light, bounds);
+    const auto own = static_cast<std::ptrdiff_t>(scene.light_names.size());
+    scene.lights.insert(scene.lights.begin() + own, light);
+    scene.light_names.emplace_back("headlight");
 }
 
 }  // namespace manylight

@@ -497,12 +497,19 @@ class Checker {
                 lens["yfov"].refuse("{} is not below pi", lens["yfov"].shown());
             if (lens.has("aspectRatio")) (void)lens["aspectRatio"].positive();
             (void)lens["znear"].positive();
+            if (lens.has("zfar")) check_far(lens);
         } else {
             for (const char* key : {"xmag", "ymag"})
                 if (lens[key].number() == 0) lens[key].refuse("0 is no size");
             (void)lens["znear"].at_least_zero();
-            (void)lens["zfar"].positive();
+            check_far(lens);
         }
+    }
+
+    static void check_far(const JsonValue& lens) {
+        if (lens["zfar"].number() <= lens["znear"].number())
+            lens["zfar"].refuse("{} is not above znear, {}", lens["zfar"].shown(),
+                                lens["znear"].shown());
     }
 
     void light(const JsonValue& light) {

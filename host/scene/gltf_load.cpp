@@ -486,6 +486,8 @@ class Loader {
         if (view.orthographic) {
             const double x = camera.orthographic.xmag;
             const double y = camera.orthographic.ymag;
+            view.near = camera.orthographic.znear;
+            view.far = camera.orthographic.zfar;
             view.aspect = std::abs(x / y);
             view.half_height = std::abs(y);
             if (x < 0) view.to_world[0] = -view.to_world[0];
@@ -494,6 +496,8 @@ class Loader {
                 notes_.add(fmt::format("cameras[{}]", node.camera),
                            "has a negative xmag or ymag; its image is mirrored");
         } else {
+            view.near = camera.perspective.znear;
+            view.far = camera.perspective.zfar;
             view.aspect = std::max(camera.perspective.aspectRatio, 0.0);
             view.half_height = std::tan(camera.perspective.yfov / 2);
         }
@@ -519,9 +523,7 @@ class Loader {
                     float4(color, 0)};
         if (in.type == "spot") {
             light.position.w = LIGHT_SPOT;
-            const double outer = std::cos(in.spot.outerConeAngle);
-            const double scale = 1 / std::max(1e-5, std::cos(in.spot.innerConeAngle) - outer);
-            light.edge = float4(scale, -outer * scale, 0, 0);
+            light.edge = float4(spot_cone(in.spot.innerConeAngle, in.spot.outerConeAngle), 0, 0);
         } else if (in.type == "directional") {
             light.position.w = LIGHT_DIRECTIONAL;
             light.axis.w = 0;

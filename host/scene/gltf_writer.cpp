@@ -153,7 +153,8 @@ void GltfWriter::add_light(nlohmann::json light, glm::vec3 position, glm::vec3 d
         {"translation", numbers(position)},
         {"extensions", {{"KHR_lights_punctual", {{"light", lights.size() - 1}}}}}};
     if (direction != glm::vec3(0)) {  // lights shine along their node's -z
-        const glm::quat q = glm::rotation(glm::vec3(0, 0, -1), glm::normalize(direction));
+        const glm::dquat q =
+            glm::rotation(glm::dvec3(0, 0, -1), glm::normalize(glm::dvec3(direction)));
         node["rotation"] = {q.x, q.y, q.z, q.w};
     }
     json_["nodes"].push_back(std::move(node));

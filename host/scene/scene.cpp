@@ -2,6 +2,8 @@
 #include "scene/scene.hpp"
 
 #define GLM_ENABLE_EXPERIMENTAL
+#include <array>
+#include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 #include <glm/gtx/component_wise.hpp>
 
@@ -10,16 +12,64 @@
 namespace manylight {
 namespace {
 
-View frame_all(const Bounds& bounds) {
-    constexpr double yfov = 0.7;
-    const glm::dvec3 centre = bounds.centre();
-    const double radius = std::max(static_cast<double>(bounds.radius()), 1e-3);
-    const double distance = 1.05 * radius / std::sin(yfov / 2);
-    const glm::dvec3 eye = centre + distance * glm::normalize(glm::dvec3(0.35, 0.3, 1.0));
+// How far triangles reach along directions: the largest dot products with their vertices.
+template <std::size_t N>
+std::array<double, N> reaches(const Scene& scene, const std::array<glm::dvec3, N>& directions) {
+    std::array<double, N> most;
+    most.fill(-std::numeric_limits<double>::infinity());
+    const auto add = [&](const glm::dvec3& p) {
+        bool grew = false;
+        for (std::size_t i = 0; i < N; ++i) {
+            const double reach = glm::dot(p, directions[i]);
+            grew |= reach > most[i];
+            most[i] = std::max(most[i], reach);
+        }
+        return grew;
+    };
+    for (std::size_t i = 0; i < 3 * scene.own_triangle_count(); ++i)
+        add(scene.vertices[scene.indices[i]]);
+    for (const Instance& in : scene.instances) {
+        const SharedMesh& mesh = scene.shared_meshes[in.mesh];
+        const std::array<double, N> before = most;
+        bool grew = false;  // by its box
+        for (int k = 0; k < 8; ++k) grew |= add(point_to_world(in, mesh.bounds.corner(k)));
+        if (!grew) continue;
+        most = before;
+        const std::size_t first = 3 * std::size_t{mesh.first_triangle};
+        for (std::size_t i = 0; i < 3 * std::size_t{mesh.triangle_count}; ++i)
+            add(point_to_world(in, scene.vertices[scene.indices[first + i]]));
+    }
+    return most;
+}
+
+// The share of the image, along its width or its height, that a framed scene fills.
+constexpr double filled = 0.85;
+
+// From the front, above and right, as near as all triangles are in the filled part of the image.
+View frame_all(const Scene& scene, double aspect) {
     View view;
     view.name = "framed";
-    view.to_world = glm::inverse(glm::lookAt(eye, centre, glm::dvec3(0, 1, 0)));
-    view.half_height = std::tan(yfov / 2);
+    view.half_height = std::tan(0.35);
+    const glm::dvec3 back = glm::normalize(glm::dvec3(0.35, 0.3, 1.0));
+    const glm::dvec3 right = glm::normalize(glm::cross(glm::dvec3(0, 1, 0), back));
+    const glm::dvec3 up = glm::cross(back, right);
+    // A point p is in the filled part of what is seen from e where, along each side of the image,
+    // dot(p, side + half back) <= dot(e, side + half back).
+    const double half_height = filled * view.half_height;
+    const double half_width = half_height * aspect;
+    const auto [r, l, u, d, near] =
+        reaches<5>(scene, {right + half_width * back, half_width * back - right,
+                           up + half_height * back, half_height * back - up, back});
+    glm::dvec3 eye(0, 0, 1);  // along right, up and back
+    if (std::isfinite(near)) {
+        eye = {(r - l) / 2, (u - d) / 2,
+               std::max((r + l) / (2 * half_width), (u + d) / (2 * half_height))};
+        // All may be on a line through the eye, or a point.
+        const double size = scene.bounds().radius();
+        eye.z = std::max(eye.z, near + (size > 0 ? 1e-3 * size : 1));
+    }
+    view.to_world = {glm::dvec4(right, 0), glm::dvec4(up, 0), glm::dvec4(back, 0),
+                     glm::dvec4(eye.x * right + eye.y * up + eye.z * back, 1)};
     return view;
 }
 
@@ -29,8 +79,8 @@ Instance make_instance(const glm::dmat4& to_world) {
     Instance in{};
     const glm::mat4 rows(glm::transpose(to_world));
     for (int k = 0; k < 3; ++k) in.to_world[k] = rows[k];
-    const glm::dmat3 linear = glm::transpose(
-        glm::dmat3(glm::dvec3(rows[0]), glm::dvec3(rows[1]), glm::dvec3(rows[2])));
+    const glm::dmat3 linear =
+        glm::transpose(glm::dmat3(glm::dvec3(rows[0]), glm::dvec3(rows[1]), glm::dvec3(rows[2])));
     const glm::dmat3 inverse = glm::transpose(glm::inverse(linear));
     for (int k = 0; k < 3; ++k) in.to_object[k] = float4(glm::vec3(inverse[k]), 0);
     in.mirrored = glm::determinant(linear) < 0 ? 1 : 0;
@@ -101,8 +151,16 @@ glm::dvec3 find_origin(const Bounds& bounds) {
     return glm::round((lower + upper) / 2.0 / unit) * unit;
 }
 
-View find_view(const Scene& scene, const std::string& name) {
-    if (name.empty()) return scene.views.empty() ? frame_all(scene.bounds()) : scene.views.front();
+glm::vec2 spot_cone(double inner, double outer) {
+    // Differences of cosines near 1, without cancellation.
+    const double half = std::sin(outer / 2);
+    const double fade = 2 * std::sin((outer + inner) / 2) * std::sin((outer - inner) / 2);
+    constexpr double sharp = 1e30;
+    return {std::min(1 / std::max(fade, 0.0), sharp), 2 * half * half};
+}
+
+View find_view(const Scene& scene, const std::string& name, double aspect) {
+    if (name.empty()) return scene.views.empty() ? frame_all(scene, aspect) : scene.views.front();
     std::string names;
     for (const View& view : scene.views) {
         if (view.name == name || view.camera_name == name) return view;
@@ -124,8 +182,8 @@ Camera make_camera(const View& view, unsigned width, unsigned height,
     const glm::dvec4 none(0);
     Camera camera;
     camera.origin = vector(view.to_world[3] + (view.orthographic ? aside : none), 0);
-    camera.right = vector(right, 0);
-    camera.up = vector(up, 0);
+    camera.right = vector(right, view.near);
+    camera.up = vector(up, view.far);
     camera.forward =
         vector((view.orthographic ? none : aside) - view.to_world[2], view.orthographic ? 1 : 0);
     return camera;

@@ -26,6 +26,8 @@ struct View {
     bool orthographic = false;
     double aspect = 0;       // width / height; 0 where the file leaves it to the image
     double half_height = 0;  // of the image: m if orthographic, otherwise tan(yfov / 2)
+    double near = 0;         // nothing nearer is seen, m along the view
+    double far = 0;          // nor anything farther; 0: all is
 };
 
 struct Bounds {
@@ -141,10 +143,15 @@ struct Features {
     return 0.2126f * rgb.r + 0.7152f * rgb.g + 0.0722f * rgb.b;
 }
 
+/// A spot's edge.x and edge.y (shared/light.h) by the angles of KHR_lights_punctual, radians. Where
+/// both are the same, its edge is sharp.
+[[nodiscard]] glm::vec2 spot_cone(double inner, double outer);
+
 /// Adds the lights of a scene's emissive triangles and sets the power of every light. `points` 0:
 /// area lights (see make_area_lights()), and their cells' areas. Otherwise that many oriented
 /// points of equal power, spread over all emissive triangles by power (paper section 5); their
-/// total power, as luminance, is the triangles'. Triangles without area emit nothing.
+/// total power, as luminance, is the triangles'. Triangles without area emit nothing. Where not all
+/// of an emitter is there (Material::cutoff), it emits as much as there is of it.
 void add_emitters(Scene& scene, unsigned points);
 
 /// Where a scene's positions are to be counted from, given its bounds in the file's frame: so that
@@ -153,10 +160,19 @@ void add_emitters(Scene& scene, unsigned points);
 /// rounded to a multiple of a power of 2 no less than that side: a scene that is moved by such a
 /// multiple has the very same positions as before.
 [[nodiscard]] glm::dvec3 find_origin(const Bounds& bounds);
+/// Whether nothing of a scene shows: no light is left after add_emitters(), and nothing is unlit.
+[[nodiscard]] bool is_dark(const Scene& scene);
+
+/// Adds a light of the camera's own to a scene that has its other lights, last of the file's: a
+/// perspective camera's is a point in the middle of its near plane, an orthographic one's shines
+/// along its view. A white surface that faces the camera has about 1 cd/m2, where the camera is a
+/// point as far from it as from the scene's middle, or as far as the scene's radius.
+void add_headlight(Scene& scene, const View& view);
 
 /// The camera of that name, or the first for an empty name; a scene without cameras is framed from
-/// the front, above and right. Throws InputError for a name that the file does not have.
-[[nodiscard]] View find_view(const Scene& scene, const std::string& name);
+/// the front, above and right, so that what it shows fills 85% of an image of that width / height,
+/// or of one that is as high. Throws InputError for a name that the file does not have.
+[[nodiscard]] View find_view(const Scene& scene, const std::string& name, double aspect = 16.0 / 9);
 
 /// The camera for an image of that size; keeps the view's height where the aspect differs. `shift`
 /// by pixels, to the right and down, shows what lies there, as a shifted lens does.

@@ -161,24 +161,33 @@ Texture add_texels(Scene& scene, const DecodedImage& image, TexelMeaning meaning
     return out;
 }
 
-glm::dvec4 mean_of_part(const Scene& scene, const Texture& t, glm::dvec2 corner, glm::dvec2 u,
-                        glm::dvec2 v, bool triangle) {
-    constexpr int side = 16;
-    const double area = std::abs(u.x * v.y - u.y * v.x) / (side * side) * t.width * t.height;
+glm::dvec4 finest_texel(const Scene& scene, const Texture& t, glm::dvec2 uv) {
+    const glm::dvec2 size(t.width, t.height);
+    const auto texel = [&](glm::dvec2 at) {
+        return glm::dvec4(
+            texel_of(scene, t, 0, shown(at.x, t.width, t.wrap_u), shown(at.y, t.height, t.wrap_v)));
+    };
+    if (t.magnified_linear == 0) return texel(uv);
+    const glm::dvec2 corner = glm::floor(uv * size - 0.5) + 0.5;  // the centre of a texel
+    const glm::dvec2 share = uv * size - corner;
+    const auto row = [&](double y) {
+        return glm::mix(texel((corner + glm::dvec2(0, y)) / size),
+                        texel((corner + glm::dvec2(1, y)) / size), share.x);
+    };
+    return glm::mix(row(0), row(1), share.y);
+}
+
+TextureLevel::TextureLevel(const Scene& scene, const Texture& texture, glm::dvec2 u, glm::dvec2 v)
+    : scene_(scene), texture_(texture) {
+    const double area = std::abs(u.x * v.y - u.y * v.x) * texture.width * texture.height;
     const double octaves = std::round(0.5 * std::log2(std::max(area, 1e-30)));
-    const auto level = static_cast<unsigned>(std::clamp<double>(octaves, 0, t.levels - 1));
-    glm::dvec4 sum(0);
-    for (int j = 0; j < side; ++j)
-        for (int i = 0; i < side; ++i) {
-            glm::dvec2 at = (glm::dvec2(i, j) + 0.5) / static_cast<double>(side);
-            // The half beyond the triangle, turned onto it.
-            if (triangle && at.x + at.y > 1) at = 1.0 - at;
-            const glm::dvec2 uv = corner + at.x * u + at.y * v;
-            sum +=
-                glm::dvec4(texel_of(scene, t, level, shown(uv.x, side_of(t.width, level), t.wrap_u),
-                                    shown(uv.y, side_of(t.height, level), t.wrap_v)));
-        }
-    return sum / static_cast<double>(side * side);
+    level_ = static_cast<unsigned>(std::clamp<double>(octaves, 0, texture.levels - 1));
+}
+
+glm::dvec3 TextureLevel::at(glm::dvec2 uv) const {
+    return glm::dvec3(texel_of(scene_, texture_, level_,
+                               shown(uv.x, side_of(texture_.width, level_), texture_.wrap_u),
+                               shown(uv.y, side_of(texture_.height, level_), texture_.wrap_v)));
 }
 
 glm::vec4 texel_of(const Scene& scene, const Texture& texture, unsigned level, unsigned x,

@@ -28,9 +28,20 @@ struct TexelMeaning {
 [[nodiscard]] glm::vec4 texel_of(const Scene& scene, const Texture& texture, unsigned level,
                                  unsigned x, unsigned y);
 
-/// The mean of a texture over the parallelogram, or the triangle, of u and v at `corner`, by the
-/// texels at 16 x 16 points of it at the level that resolves these. Linear.
-[[nodiscard]] glm::dvec4 mean_of_part(const Scene& scene, const Texture& texture, glm::dvec2 corner,
-                                      glm::dvec2 u, glm::dvec2 v, bool triangle);
+/// What a texture shows at coordinates, at its finest level, by its filter for that. Linear.
+[[nodiscard]] glm::dvec4 finest_texel(const Scene& scene, const Texture& texture, glm::dvec2 uv);
+
+/// The level of a texture that resolves points which are u and v apart, in its coordinates.
+class TextureLevel {
+  public:
+    TextureLevel(const Scene& scene, const Texture& texture, glm::dvec2 u, glm::dvec2 v);
+    /// The texel at coordinates. Linear.
+    [[nodiscard]] glm::dvec3 at(glm::dvec2 uv) const;
+
+  private:
+    const Scene& scene_;
+    const Texture& texture_;
+    unsigned level_;
+};
 
 }  // namespace manylight

@@ -58,9 +58,8 @@ Light point_light(glm::vec3 position, glm::vec3 intensity, float range) {
 
 Light spot_light(glm::vec3 position, glm::vec3 direction, glm::vec3 intensity, float inner,
                  float outer, float range) {
-    const float scale = 1 / std::max(1e-5f, std::cos(inner) - std::cos(outer));
     return {float4(position, LIGHT_SPOT), float4(glm::normalize(direction), range),
-            float4(scale, -std::cos(outer) * scale, 0, 0), float4(intensity, 0)};
+            float4(spot_cone(inner, outer), 0, 0), float4(intensity, 0)};
 }
 
 Light directional_light(glm::vec3 direction, glm::vec3 illuminance) {

@@ -277,8 +277,8 @@ static bool occluded(BVH_PARAMETERS, Ray ray) {
     return false;
 }
 
-// The hit with the smallest t.
-static Hit closest_hit(BVH_PARAMETERS, Ray ray) {
+// The hit with the smallest t beyond `start`.
+static Hit closest_hit(BVH_PARAMETERS, Ray ray, float start) {
     Traced traced = trace_in_world(ray);
     Hit hit = {~0u, ray.end};
     int stack[BVH_STACK];
@@ -319,7 +319,7 @@ static Hit closest_hit(BVH_PARAMETERS, Ray ray) {
             *(float_k*)t = hits.t / hits.n;
             for (uint lanes = found; lanes; lanes &= lanes - 1u) {
                 const uint lane = lowest(lanes);
-                if (t[lane] >= hit.t) continue;
+                if (t[lane] >= hit.t || t[lane] <= start) continue;
 #if HAS_ALPHA
                 if (!is_block_there(&ready, lane, traced.ray.origin, traced.ray.direction,
                                     triangles[lane],

@@ -79,7 +79,8 @@ INLINE Direct_n direct_n(const Lights_n* l, const Points_n* p, const Origins_n* 
 #endif
 #if HAS_SPOT
     const float_n off_axis = -dot3_n(wx, wy, wz, l->ax, l->ay, l->az);
-    const float_n cone = clamp(off_axis * l->ex + l->ey, 0.0f, 1.0f);
+    const float_n versine = versine_n(off_axis, wx, wy, wz, l->ax, l->ay, l->az);
+    const float_n cone = clamp((l->ey - versine) * l->ex, 0.0f, 1.0f);
     emitted = select(emitted, within * cone * cone, l->kind == LIGHT_SPOT);
 #endif
 #if HAS_ORIENTED || HAS_TRIANGLE || HAS_QUAD
@@ -100,6 +101,11 @@ INLINE Direct_n direct_n(const Lights_n* l, const Points_n* p, const Origins_n* 
     solid_angle = select(zero, facing * inverse * inverse * from->reflects, area);
 #endif
     emitted = select(emitted, facing, oriented);
+    // The square of a small area would be too small for a float.
+    const float_n scale = inverse_n(max(max(max(fabs(nx), fabs(ny)), fabs(nz)), 1e-30f));
+    nx *= scale;
+    ny *= scale;
+    nz *= scale;
     const float_n offset = l->ew * inverse_root_n(max(dot3_n(nx, ny, nz, nx, ny, nz), 1e-30f));
     const float_n side = select(zero, select(offset, -offset, cosine < 0.0f), oriented);
     tx += nx * side;

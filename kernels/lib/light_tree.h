@@ -16,6 +16,18 @@ static Angle angle_of(float cosine) {
     return angle;
 }
 
+// That of 1 - cosine, which tells small angles apart.
+static Angle angle_of_versine(float versine) {
+    const Angle angle = {1.0f - versine, sqrt(versine * (2.0f - versine))};
+    return angle;
+}
+
+// Between unit vectors.
+static Angle angle_between(float3 a, float3 b) {
+    const Angle angle = {dot(a, b), length(cross(a, b))};
+    return angle;
+}
+
 // a - b, or 0 where b is larger.
 static Angle less(Angle a, Angle b) {
     Angle difference = {1.0f, 0.0f};
@@ -48,11 +60,12 @@ static float node_importance(__global const LightNode* node, const Receiver* r) 
     const float3 towards = to_centre / sqrt(distance2);
     const Angle bound = {sqrt(1.0f - radius2 / distance2), sqrt(radius2 / distance2)};
     float emission = 1.0f;
-    if (node->upper.w >= 0.0f) {
-        const Angle off_axis =
-            less(angle_of(-dot(node->cone.xyz, towards)), angle_of(node->lower.w));
-        emission = less(off_axis, bound).cosine;
-        if (emission < 1.0f && emission <= node->upper.w) return 0.0f;
+    if (node->upper.w <= 1.0f) {
+        const Angle off_axis = less(
+            less(angle_between(-node->cone.xyz, towards), angle_of_versine(node->lower.w)), bound);
+        emission = off_axis.cosine;
+        if (versine_of(off_axis.cosine, off_axis.sine * off_axis.sine) >= node->upper.w)
+            return 0.0f;
     }
     const float incidence = less(angle_of(dot(r->normal, towards)), bound).cosine;
     if (incidence <= 0.0f) return 0.0f;

@@ -46,12 +46,18 @@ static LightSample light_point(__global const Light* light, float3 position, flo
 }
 #endif
 
+// 1 - cosine, of an angle whose cosine and squared sine these are.
+static float versine_of(float cosine, float sine2) {
+    return cosine > 0.0f ? sine2 / (1.0f + cosine) : 1.0f - cosine;
+}
+
 #if HAS_SPOT
 static LightSample light_spot(__global const Light* light, float3 position, float2 u) {
     LightSample s = sample_towards(position, light->position.xyz);
     const float falloff = punctual_falloff(&s, light->axis.w);
-    const float cosine = -dot(s.direction, light->axis.xyz);
-    const float cone = clamp(cosine * light->edge.x + light->edge.y, 0.0f, 1.0f);
+    const float3 across = cross(s.direction, light->axis.xyz);
+    const float versine = versine_of(-dot(s.direction, light->axis.xyz), dot(across, across));
+    const float cone = clamp((light->edge.y - versine) * light->edge.x, 0.0f, 1.0f);
     s.emitted = light->emission.xyz * (falloff * cone * cone);
     return s;
 }
@@ -84,7 +90,8 @@ static float emit_cosine(LightSample* s, float3 intensity, float3 normal, float 
     }
     if (cosine <= 0.0f) return 0.0f;
     s->emitted = intensity * (cosine / squared);
-    s->target += normal * (offset / length(normal));
+    const float largest = max(max(fabs(normal.x), fabs(normal.y)), fabs(normal.z));
+    s->target += normalize(normal / largest) * offset;  // whose square may be too small for a float
     return cosine / squared;
 }
 #endif

@@ -53,8 +53,8 @@ typedef struct NODE {
     NODE_REAL falloff;  // 1 / range^2, 0 without a range
 #endif
 #if HAS_SPOT
-    NODE_REAL scale, offset;  // of the cone, 0 and 1 without one
-    NODE_REAL reach;          // of a group
+    NODE_REAL scale, outer;  // Light::edge.x and y, 1 and 3 without a cone
+    NODE_REAL reach;         // of a group
 #endif
 #if !WIDE_NODES
     uint kind;  // LIGHT_DIRECTIONAL for groups of them, too
@@ -89,8 +89,8 @@ static Node_1 load_node(__global const LightNode* node, __global const Light* li
                     : 0.0f;
 #endif
 #if HAS_SPOT
-    n.scale = n.kind == LIGHT_SPOT ? lights[node->first].edge.x : 0.0f;
-    n.offset = n.kind == LIGHT_SPOT ? lights[node->first].edge.y : 1.0f;
+    n.scale = n.kind == LIGHT_SPOT ? lights[node->first].edge.x : 1.0f;
+    n.outer = n.kind == LIGHT_SPOT ? lights[node->first].edge.y : 3.0f;
     n.reach = node->reach;
 #endif
     return n;
@@ -129,13 +129,13 @@ INLINE Node_n load_nodes_n(__global const LightNode* nodes, __global const Light
 #endif
 #if HAS_SPOT
     n.reach = rows[14];
-    n.scale = (float_n)(0.0f);
-    n.offset = (float_n)(1.0f);
+    n.scale = (float_n)(1.0f);
+    n.outer = (float_n)(3.0f);
     for (lanes = lanes_n(n.kind == LIGHT_SPOT); lanes; lanes &= lanes - 1u) {
         const uint lane = lowest(lanes);
         __global const Light* light = lights + UINT_LANE(*first, lane);
         SET_LANE(n.scale, lane, light->edge.x);
-        SET_LANE(n.offset, lane, light->edge.y);
+        SET_LANE(n.outer, lane, light->edge.y);
     }
 #endif
     return n;
@@ -164,6 +164,13 @@ typedef struct NAMED(Color) {
 
 INLINE REAL NAMED(dot3)(REAL ax, REAL ay, REAL az, REAL bx, REAL by, REAL bz) {
     return fma(ax, bx, fma(ay, by, az * bz));
+}
+
+// 1 - the cosine of the angle of two unit vectors, whose cosine it is.
+INLINE REAL NAMED(versine)(REAL cosine, REAL ax, REAL ay, REAL az, REAL bx, REAL by, REAL bz) {
+    const REAL x = fma(ay, bz, -az * by), y = fma(az, bx, -ax * bz), z = fma(ax, by, -ay * bx);
+    return WHERE(cosine > 0.0f, NAMED(dot3)(x, y, z, x, y, z) * NAMED(inverse)(1.0f + fabs(cosine)),
+                 1.0f - cosine);
 }
 
 // (k + sqrt(k^2 + v)) / 2: max(k, 0), smoothed over sqrt(v); positive where v is, whatever the
@@ -268,7 +275,9 @@ INLINE REAL NODE_NAMED(node_geometry)(const NODE* node, const NAMED(Points) * p,
 #endif
 #if HAS_SPOT
     if (ANY_NODE(node->kind == LIGHT_SPOT)) {
-        const REAL cone = clamp(along * node->scale + node->offset, 0.0f, 1.0f);
+        const REAL versine = NAMED(versine)(along, *wx, *wy, *wz, (REAL)(node->ax),
+                                            (REAL)(node->ay), (REAL)(node->az));
+        const REAL cone = clamp((node->outer - versine) * node->scale, 0.0f, 1.0f);
         emission *= cone * cone;
     }
 #endif

@@ -337,8 +337,9 @@ static bool occlude_packet(BVH_PARAMETERS, Packet* p) {
     return live != all;
 }
 
-// Shortens every ray to its closest hit, whose triangle `triangles` gets; ~0 where there is none.
-INLINE void closest_hits(BVH_PARAMETERS, Packet* p, int_n* triangles) {
+// Shortens every ray to its closest hit beyond `starts`, whose triangle `triangles` gets; ~0 where
+// there is none.
+INLINE void closest_hits(BVH_PARAMETERS, Packet* p, const float_n* starts, int_n* triangles) {
     int stack[BVH_STACK];
     float distance[BVH_STACK];
     uint masks[BVH_STACK];
@@ -390,7 +391,9 @@ INLINE void closest_hits(BVH_PARAMETERS, Packet* p, int_n* triangles) {
                     const float_k t = hits.t / hits.n;
                     for (uint lanes = found; lanes; lanes &= lanes - 1u) {
                         const uint triangle = lowest(lanes);
-                        if (LANE(t, triangle) >= LANE(p->end, lane)) continue;
+                        if (LANE(t, triangle) >= LANE(p->end, lane) ||
+                            LANE(t, triangle) <= ((const float*)starts)[lane])
+                            continue;
 #if HAS_ALPHA
                         if (!is_there_for(p, lane, &block, triangle, names[triangle],
                                           names[triangle] + p->renumber ALPHA_ARGUMENTS))
@@ -406,6 +409,7 @@ INLINE void closest_hits(BVH_PARAMETERS, Packet* p, int_n* triangles) {
                     for (uint part = 0u; part < PARTS; ++part) {
                         if (PARTS > 1 && !PART_OF(mask, part)) continue;
                         TriangleHits hits = hit_triangle(&block, triangle, p, part, false);
+                        hits.hit &= hits.t > starts[part] * hits.n;
 #if HAS_ALPHA
                         hits.hit =
                             there_for_all(p, part, hits.hit, &block, triangle, names[triangle],

@@ -11,11 +11,13 @@ SHARED_BEGIN
 /// The ray through the image point (x, y), in pixels from the top left corner of a width x height
 /// image, has sx = 2x/width - 1 and sy = 1 - 2y/height. Perspective: it starts at `origin` towards
 /// forward + sx right + sy up. Orthographic: it starts at origin + sx right + sy up towards
-/// forward.
+/// forward. It sees what is between two planes across its view.
 typedef struct Camera {
     float4 origin;   // xyz
-    float4 right;    // xyz: half the image's width, at distance 1 where perspective
-    float4 up;       // xyz: half the image's height, likewise
+    float4 right;    // xyz: half the image's width, at distance 1 where perspective; w: distance of
+                     // the near plane, m
+    float4 up;       // xyz: half the image's height, likewise; w: distance of the far plane, m, 0
+                     // if none
     float4 forward;  // xyz: unit but for a shift, w: 1 orthographic, 0 perspective
 } Camera;
 SHARED_SIZE(Camera, 64)

@@ -26,9 +26,9 @@ typedef struct LightNode {
     float reach;    // of a group of spots: the cosine of the largest angle off the mean axis in
                     // which any of them shines, or less; -1: all, as of other nodes
     uint kind;      // of a leaf its LightKind, of an inner node NODE_GROUP or NODE_DIRECTIONS
-    float4 lower;   // xyz: bounds; w: cosine of the bound on the angle between cone and axes
-    float4 upper;   // xyz: bounds; w: cosine of the largest angle off its axis that a light
-                    // emits at, at most a right angle; below 0: everywhere
+    float4 lower;   // xyz: bounds; w: 1 - cosine of the bound on the angle between cone and axes
+    float4 upper;   // xyz: bounds; w: 1 - cosine of the largest angle off its axis that a light
+                    // emits at, at most a right angle; above 1: everywhere
     float4 cone;    // xyz: unit axis of the cone that holds all emission axes; w: sum of power
     float4 unused;  // the first half, all that estimates need, is one line of a cache
 } LightNode;
