@@ -111,6 +111,14 @@ static float3 map_normal(float3 texel, float scale, float3 normal, float4 tangen
     return dot(mapped, mapped) > 0.0f ? normalize(mapped) : normal;
 }
 
+#if HAS_SMOOTH
+// How high a vertex's tangent plane, which has normal n, is along `normal` over a point of the
+// triangle at `from` the vertex; 0 below it.
+static float height_of_plane(float3 n, float3 from, float3 normal) {
+    return -min(dot(n, from), 0.0f) * dot(n, normal);
+}
+#endif
+
 // The surface where a ray hits a triangle; ~0: none.
 static void write_surface(Tiles tiles, Camera camera, __global Surface* surfaces, uint item,
                           Ray ray, uint triangle, float distance, MESH_PARAMETERS) {
@@ -141,12 +149,13 @@ static void write_surface(Tiles tiles, Camera camera, __global Surface* surfaces
     const float3 geometric = normalize(front ? scaled : -scaled);
     float3 normal = geometric;
 #if HAS_SMOOTH
-    const float3 smooth =
-        normal_to_world(in, vload3(corner.x, vertex_normals)) * (1.0f - weights.x - weights.y) +
-        normal_to_world(in, vload3(corner.y, vertex_normals)) * weights.x +
-        normal_to_world(in, vload3(corner.z, vertex_normals)) * weights.y;
-    if (dot(smooth, smooth) > 0.0f)
-        normal = normalize(dot(smooth, geometric) < 0.0f ? -smooth : smooth);
+    const float3 n0 = normal_to_world(in, vload3(corner.x, vertex_normals));
+    const float3 n1 = normal_to_world(in, vload3(corner.y, vertex_normals));
+    const float3 n2 = normal_to_world(in, vload3(corner.z, vertex_normals));
+    const float weight0 = 1.0f - weights.x - weights.y;
+    const float3 smooth = n0 * weight0 + n1 * weights.x + n2 * weights.y;
+    const float side = dot(smooth, geometric) < 0.0f ? -1.0f : 1.0f;
+    if (dot(smooth, smooth) > 0.0f) normal = normalize(side * smooth);
 #endif
     const float3 along1 = edge1 * weights.x, along2 = edge2 * weights.y;
     float3 position = v0 + along1 + along2;
@@ -165,7 +174,16 @@ static void write_surface(Tiles tiles, Camera camera, __global Surface* surfaces
 #endif
     surface->position = (float4)(position, distance);
     surface->normal = (float4)(normal, 0.0f);
-    surface->geometric = (float4)(geometric, OFFSET_SCALE * dot(fabs(geometric), parts));
+    surface->horizon = (float4)(geometric, OFFSET_SCALE * dot(fabs(geometric), parts));
+#if HAS_SMOOTH
+    const float3 from = along1 + along2;
+    const float lift = weight0 * height_of_plane(side * n0, from, normal) +
+                       weights.x * height_of_plane(side * n1, from - edge1, normal) +
+                       weights.y * height_of_plane(side * n2, from - edge2, normal);
+    if (lift > LEAST_LIFT * (length(edge1) + length(edge2)))
+        surface->horizon =
+            (float4)(normal, lift + surface->horizon.w / max(dot(normal, geometric), LEAST_SLOPE));
+#endif
     const uint material = triangle_materials[triangle];
     surface->material = material;
     surface->front = front ? 1u : 0u;

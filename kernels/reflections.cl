@@ -57,7 +57,7 @@ KERNEL void reflections_add(Tiles tiles, Camera camera, BVH_PARAMETERS,
     const uint2 pixel = item_pixel(tiles, item);
     const float2 u = reflection_point(pixel.y * tiles.width + pixel.x, pixel_sample, seed);
     const float3 wi = sample_lobe(r.material.roughness, r.normal, r.to_camera, u);
-    if (dot(r.normal, wi) <= 0.0f || dot(r.geometric, wi) <= 0.0f) return;
+    if (dot(r.normal, wi) <= 0.0f || dot(r.horizon, wi) <= 0.0f) return;
     const Ray ray = {shadow_origin(&r), wi, INFINITY};
     const Hit hit = closest_hit(BVH_ARGUMENTS, ray, 0.0f);
 #if HAS_INSTANCES

@@ -151,7 +151,7 @@ TEST(light_tree, importance_is_conservative) {
         Surface surface{};
         surface.position =
             float4(14 * unit(engine) - 2, 5 * unit(engine) - 1, 14 * unit(engine) - 2, 1);
-        surface.normal = surface.geometric = float4(random_direction(engine), 0);
+        surface.normal = surface.horizon = float4(random_direction(engine), 0);
         for (const LightNode& node : tree.nodes) {
             bool contributes = false;
             for (uint k = node.first; k < node.first + node.count && !contributes; ++k)
@@ -190,7 +190,7 @@ TEST(light_tree, spots_shine_within_reach) {
     for (int i = 0; i < 200; ++i) {
         Surface surface{};
         surface.position = float4(8 * unit(engine), 4 * unit(engine), 2 * unit(engine), 1);
-        surface.normal = surface.geometric = float4(random_direction(engine), 0);
+        surface.normal = surface.horizon = float4(random_direction(engine), 0);
         for (uint n = 0; n < tree.nodes.size(); ++n) {
             const LightNode& node = tree.nodes[n];
             bool contributes = false;

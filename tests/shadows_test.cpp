@@ -7,6 +7,7 @@
 #include "reference/gbuffer.hpp"
 #include "reference/tiles.hpp"
 #include "support.hpp"
+#include "verify/scene_maker.hpp"
 
 namespace manylight {
 namespace {
@@ -267,6 +268,43 @@ TEST(shadows, surfaces_do_not_shadow_themselves) {
                 << "scale " << scale << ", pixel " << x << ", " << y;
         });
         EXPECT_GT(lit, 1000);
+    }
+}
+
+// The light's edge on a ball of few triangles with vertex normals runs where that of a round ball
+// does, and not along the triangles that turn from the light.
+TEST(shadows, terminator_of_a_smooth_ball) {
+    SceneMaker maker;
+    maker.add(make_ball(glm::vec3(0), 1), maker.add(diffuse(glm::vec3(0.7f))));
+    const glm::vec3 to_light = glm::normalize(glm::vec3(1, 0.3f, 0.2f));
+    maker.add(directional_light(-to_light, glm::vec3(10)));
+    test::TestScene s{maker.finish(), {}, 96, 72};
+    s.camera = make_camera(look({0, 0.3, 4}, {0, 0, 0}, 0.6), s.width, s.height);
+    RenderOptions options;
+    options.sampler = "exhaustive";
+    options.spp = 1;
+    const Tiles tiles = all_tiles(s.width, s.height, 32);
+    FOR_EACH_DEVICE(device) {
+        const Image image = test::render(device, s, options).image;
+        int lit = 0;
+        int dark = 0;
+        int wrong = 0;
+        for (unsigned y = 0; y < s.height; ++y)
+            for (unsigned x = 0; x < s.width; ++x) {
+                const reference::Ray ray =
+                    reference::primary_ray(s.camera, tiles, glm::dvec2(x, y) + 0.5);
+                const double along = -glm::dot(ray.origin, ray.direction);
+                const double inside = along * along - glm::dot(ray.origin, ray.origin) + 1;
+                if (inside < 0.05) continue;  // near the outline
+                const glm::dvec3 normal = ray.origin + (along - std::sqrt(inside)) * ray.direction;
+                const double cosine = glm::dot(normal, glm::dvec3(to_light));
+                if (std::abs(cosine) < 0.04) continue;
+                const bool shines = image.at(x, y)[0] > 0;
+                wrong += shines == (cosine > 0) ? 0 : 1;
+                ++(cosine > 0 ? lit : dark);
+            }
+        EXPECT_GT(std::min(lit, dark), 500);
+        EXPECT_LE(wrong, 5);
     }
 }
 

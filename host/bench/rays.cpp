@@ -19,8 +19,8 @@ struct Segment {
 std::optional<Segment> segment_to(const Light& light, const Surface& surface) {
     const auto kind = static_cast<int>(light.position.w);
     const bool area = kind == LIGHT_TRIANGLE || kind == LIGHT_QUAD;
-    const glm::vec3 normal(surface.geometric);
-    Segment s{glm::vec3(surface.position) + normal * surface.geometric.w, {}, 1};
+    const glm::vec3 normal(surface.horizon);
+    Segment s{glm::vec3(surface.position) + normal * surface.horizon.w, {}, 1};
     glm::vec3 target(light.position);
     glm::vec3 facing(0);
     if (area) {

@@ -52,6 +52,23 @@ double shadow_offset(const Triangle& triangle, const Hit& hit) {
     return OFFSET_SCALE * glm::dot(glm::abs(glm::normalize(triangle.face())), parts);
 }
 
+// How far the body that a triangle's vertex normals tell of bulges over it along the interpolated
+// one; see LEAST_LIFT. `side`: -1 where the viewer is behind these.
+double bulge(const Triangle& triangle, const Hit& hit, const glm::dvec3& normal, double side) {
+    const double weights[3] = {1 - hit.u - hit.v, hit.u, hit.v};
+    glm::dvec3 point(0);
+    for (int k = 0; k < 3; ++k) point += weights[k] * triangle.corner(k);
+    double height = 0;
+    for (int k = 0; k < 3; ++k) {
+        const glm::dvec3 n = side * triangle.normal(k);
+        const double below = glm::dot(triangle.corner(k) - point, n);
+        if (below > 0) height += weights[k] * below * glm::dot(n, normal);
+    }
+    const double edges = glm::length(triangle.corner(1) - triangle.corner(0)) +
+                         glm::length(triangle.corner(2) - triangle.corner(0));
+    return height > LEAST_LIFT * edges ? height : 0;
+}
+
 }  // namespace
 
 Surface surface_at(const Scene& scene, const Ray& ray, const std::optional<Hit>& hit) {
@@ -66,15 +83,21 @@ Surface surface_at(const Scene& scene, const Ray& ray, const std::optional<Hit>&
     const bool front = glm::dot(geometric, ray.direction) < 0;
     if (!front) geometric = -geometric;
     glm::dvec3 normal = smooth == glm::dvec3(0) ? geometric : glm::normalize(smooth);
-    if (glm::dot(normal, geometric) < 0) normal = -normal;
+    const double side = glm::dot(normal, geometric) < 0 ? -1 : 1;
+    normal *= side;
+    const double offset = shadow_offset(triangle, *hit);
+    const double lift = bulge(triangle, *hit, normal, side);
+    surface.horizon = float4(glm::vec3(geometric), static_cast<float>(offset));
+    if (lift > 0) {
+        const double cosine = std::max(glm::dot(normal, geometric), double{LEAST_SLOPE});
+        surface.horizon = float4(glm::vec3(normal), static_cast<float>(lift + offset / cosine));
+    }
     normal = normal_at(scene, ray, *hit, normal);
     const glm::dvec3 v0 = triangle.corner(0);
     const glm::dvec3 position =
         v0 + hit->u * (triangle.corner(1) - v0) + hit->v * (triangle.corner(2) - v0);
     surface.position = float4(glm::vec3(position), static_cast<float>(hit->t));
     surface.normal = float4(glm::vec3(normal), 0);
-    surface.geometric =
-        float4(glm::vec3(geometric), static_cast<float>(shadow_offset(triangle, *hit)));
     surface.triangle = hit->triangle;
     surface.material = triangle.material();
     surface.shading = surface.material;

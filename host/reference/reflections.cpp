@@ -18,7 +18,7 @@ glm::dvec3 reflected(const Scene& scene, const Camera& camera, const Surface& su
                      const Ray& ray, const std::optional<Hit>& hit) {
     const glm::dvec3 normal = glm::normalize(glm::dvec3(surface.normal));
     const double cosine = glm::dot(normal, ray.direction);
-    if (cosine <= 0 || glm::dot(glm::dvec3(surface.geometric), ray.direction) <= 0 || !hit)
+    if (cosine <= 0 || glm::dot(glm::dvec3(surface.horizon), ray.direction) <= 0 || !hit)
         return glm::dvec3(0);
     const Triangle triangle(scene, hit->triangle);
     const double area = triangle.cell_area();
@@ -69,7 +69,7 @@ Reflection reflection(const Scene& scene, const Tracer& tracer, const Camera& ca
     const glm::dvec3 position(surface.position);
     if (!reflects(surface, material, camera)) return out;
     Ray ray;
-    ray.origin = position + glm::dvec3(surface.geometric) * double{surface.geometric.w};
+    ray.origin = position + glm::dvec3(surface.horizon) * double{surface.horizon.w};
     ray.direction = sample_lobe(
         double{material.roughness}, glm::normalize(glm::dvec3(surface.normal)),
         direction_to_camera(camera, position), reflection_point(pixel, pixel_sample, seed));

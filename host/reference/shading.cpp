@@ -168,18 +168,18 @@ Unshadowed shade(const glm::dvec3& position, const Surface& surface, const Mater
                  const Camera& camera, const Light& light, const glm::dvec2& u,
                  const LightShift& shift = {}) {
     const glm::dvec3 normal = glm::normalize(glm::dvec3(surface.normal));
-    const glm::dvec3 geometric(surface.geometric);
+    const glm::dvec3 horizon(surface.horizon);
     const Emission e = emission(light, position, u, shift);
     Unshadowed out;
     out.value = glm::dvec3(0);
     if (e.light == glm::dvec3(0)) return out;
     const double cosine = glm::dot(normal, e.towards);
-    if (cosine <= 0 || glm::dot(geometric, e.towards) <= 0) return out;
+    if (cosine <= 0 || glm::dot(horizon, e.towards) <= 0) return out;
     const Brdf f = split_brdf(material, normal, e.towards, direction_to_camera(camera, position));
     const double share =
         reflects(surface, material, camera) ? light_share(f.density, e.solid_angle) : 1;
     out.value = (f.diffuse + f.specular * share) * e.light * cosine;
-    out.shadow.origin = position + geometric * static_cast<double>(surface.geometric.w);
+    out.shadow.origin = position + horizon * static_cast<double>(surface.horizon.w);
     out.shadow.direction = e.infinite ? e.towards : e.target - out.shadow.origin;
     if (!e.infinite) out.shadow.end = 1;
     out.rounding = {origin_rounding(surface, out.shadow.origin), e.moved};
@@ -221,7 +221,7 @@ glm::dvec3 brdf(const Material& material, const glm::dvec3& normal, const glm::d
 }
 
 glm::dvec3 origin_rounding(const Surface& surface, const glm::dvec3& origin) {
-    return epsilon * (glm::abs(origin) + double{surface.geometric.w});
+    return epsilon * (glm::abs(origin) + double{surface.horizon.w});
 }
 
 bool reflects(const Surface& surface, const Material& material, const Camera& camera) {

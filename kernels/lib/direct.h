@@ -13,7 +13,7 @@
 typedef struct Receiver {
     float3 position;
     float3 normal;
-    float3 geometric;
+    float3 horizon;
     float3 to_camera;
     float offset;
     bool reflects;  // stage reflections takes part in what the GGX lobe reflects
@@ -27,8 +27,8 @@ static Receiver make_receiver(__global const Surface* surface, __global const Ma
     Receiver r;
     r.position = surface->position.xyz;
     r.normal = surface->normal.xyz;
-    r.geometric = surface->geometric.xyz;
-    r.offset = surface->geometric.w;
+    r.horizon = surface->horizon.xyz;
+    r.offset = surface->horizon.w;
     r.to_camera = direction_to_camera(camera, r.position);
     r.material = materials[surface->shading];
     r.reflects = false;
@@ -41,14 +41,14 @@ static Receiver make_receiver(__global const Surface* surface, __global const Ma
 }
 
 // Where shadow rays start.
-static float3 shadow_origin(const Receiver* r) { return r->position + r->geometric * r->offset; }
+static float3 shadow_origin(const Receiver* r) { return r->position + r->horizon * r->offset; }
 
 // f Le G, cd/m2, of a light (of its point u), without visibility and without what is left to stage
 // reflections; 0 if the light is behind the surface. `shadow` gets the segment that has to be free.
 static float3 unshadowed(const Receiver* r, __global const Light* light, float2 u, Ray* shadow) {
     const LightSample s = sample_light(light, r->position, u);
     const float cosine = dot(r->normal, s.direction);
-    if (cosine <= 0.0f || dot(r->geometric, s.direction) <= 0.0f) return (float3)(0.0f);
+    if (cosine <= 0.0f || dot(r->horizon, s.direction) <= 0.0f) return (float3)(0.0f);
     shadow->origin = shadow_origin(r);
     shadow->direction = s.infinite ? s.direction : s.target - shadow->origin;
     shadow->end = s.infinite ? INFINITY : 1.0f;

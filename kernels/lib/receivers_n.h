@@ -7,7 +7,7 @@
 #include "lib/cells.h"
 #include "lib/lanes.h"
 
-// Where shadow rays start, unit geometric normals, and 1 where stage reflections takes part.
+// Where shadow rays start, normals of the horizons, and 1 where stage reflections takes part.
 typedef struct Origins_n {
     float_n x, y, z, gx, gy, gz, reflects;
 } Origins_n;

@@ -17,7 +17,7 @@
 // clang-format off
 #define SHARED_FIELDS(X)                                                                           \
     X(Camera, origin) X(Camera, right) X(Camera, up) X(Camera, forward)                            \
-    X(Surface, position) X(Surface, normal) X(Surface, geometric) X(Surface, triangle)             \
+    X(Surface, position) X(Surface, normal) X(Surface, horizon) X(Surface, triangle)             \
     X(Surface, material) X(Surface, front) X(Surface, shading)                                     \
     X(Texture, first) X(Texture, width) X(Texture, height) X(Texture, levels) X(Texture, format)   \
     X(Texture, wrap_u) X(Texture, wrap_v) X(Texture, magnified_linear)                             \

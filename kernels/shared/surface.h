@@ -10,8 +10,9 @@ SHARED_BEGIN
 typedef struct Surface {
     float4 position;   // xyz; w: distance from the ray's origin, negative where the ray missed
     float4 normal;     // xyz: unit shading normal on the viewer's side
-    float4 geometric;  // xyz: unit normal of the triangle on the viewer's side;
-                       // w: distance by which shadow rays start off the surface (see OFFSET_SCALE)
+    float4 horizon;    // xyz: unit normal on the viewer's side of the plane below which no light
+                       // shines: the triangle's, or the vertices' where that is lifted;
+                       // w: distance along it at which shadow rays start (see LEAST_LIFT)
     uint triangle;     // index in Scene::indices / 3, or an instance's
     uint material;     // index in Scene::materials
     uint front;        // 1 where the viewer is on the side that the triangle's winding faces
@@ -34,6 +35,18 @@ SHARED_SIZE(Surface, 64)
 /// What the test of a triangle rounds is not in it (see prepare_block() in kernels/lib/bvh.h).
 /// (After Pharr, Jakob, Humphreys, "Physically Based Rendering" 4th ed., 6.8.)
 #define OFFSET_SCALE 1.2e-6f
+
+/// A mesh with vertex normals stands for a rounder body, of which its triangles cut off the bulge.
+/// Where these turn from the light, its shadow would end the light in steps. So shadow rays start
+/// where the body would be: at the height of the vertices' tangent planes over the triangle, as
+/// they are interpolated, along the interpolated normal, and light is below the horizon where it is
+/// below that normal's plane. Lifts of less than this times the length of two edges are none: the
+/// triangle is flat, or hollow.
+/// The rounding of the hit is cleared along that normal, too, but as if it stood off the triangle's
+/// by no more than a cosine of LEAST_SLOPE.
+/// (Hanika, "Hacking the Shadow Terminator", Ray Tracing Gems II, 2021, ch. 4.)
+#define LEAST_LIFT 1e-4f
+#define LEAST_SLOPE 0.0625f
 
 SHARED_END
 
