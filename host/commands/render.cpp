@@ -115,8 +115,8 @@ json make_parameters(const RenderOptions& o, const LoadedScene& loaded, const Fr
     };
 }
 
-json make_stats(json parameters, const LoadedScene& loaded, const Plan& plan,
-                const FrameResult& result, Device& device) {
+json make_stats(json parameters, const RenderOptions& o, const LoadedScene& loaded,
+                const Plan& plan, const FrameResult& result, Device& device) {
     json stats = std::move(parameters);
     stats["version"] = MANYLIGHT_VERSION;
     stats["device"] = device.info().name;
@@ -132,9 +132,10 @@ json make_stats(json parameters, const LoadedScene& loaded, const Plan& plan,
     stats["seconds"] = {{"compile", device.compile_seconds()},
                         {"prepare", result.prepare_seconds},
                         {"render", result.render_seconds}};
-    if (result.error)
-        stats["error"] = {{"relmse", result.error->relmse},
-                          {"standard_error", result.error->standard_error}};
+    if (o.estimates_error())
+        stats["error"] = result.error ? json{{"relmse", result.error->relmse},
+                                             {"standard_error", result.error->standard_error}}
+                                      : json();
     const std::map<std::string, double> stages = device.stage_seconds();
     stats["stage_seconds"] = stages;
     const auto shadows = stages.find("shadows");
@@ -218,11 +219,36 @@ void print_summary(const RenderOptions& options, const FrameResult& result, doub
         "{:.2f})\n",
         options.sampler, result.light_samples, later, result.spp, options.width, options.height,
         seconds, result.prepare_seconds, result.render_seconds);
-    if (!result.error) return;
-    say("estimated relMSE {:.3g} +- {:.2g} (95%)\n", result.error->relmse,
-        1.96 * result.error->standard_error);
-    if (options.target_error > 0 && result.error->relmse > options.target_error)
-        warn("--target-error {}: not reached", options.target_error);
+    if (result.error)
+        say("estimated relMSE {}{:.3g} +- {:.2g} (95%)\n",
+            result.error->is_noise() ? "at least " : "", result.error->relmse,
+            result.error->margin());
+    else if (options.estimates_error())
+        say("no estimate of relMSE: the image is black, or no pixel has two samples\n");
+}
+
+// What was asked for, and is not so.
+void warn_of_goals(const RenderArguments& arguments, const FrameResult& result,
+                   const json& seconds) {
+    const double target = arguments.options.target_error;
+    if (target > 0 && !result.error)
+        warn("--target-error {}: not reached, as far as is known: there is no estimate", target);
+    else if (target > 0 && result.error->most() > target)
+        warn("--target-error {}: not reached: relMSE may be {:.3g}", target, result.error->most());
+    const double taken = seconds_since(process_start());
+    const double over = taken - arguments.seconds;
+    if (arguments.seconds == 0 || over < 0.05) return;
+    std::string parts;
+    double others = taken;
+    for (const char* part : {"load", "build", "compile", "prepare", "render"}) {
+        const double own = seconds[part].get<double>();
+        parts += fmt::format("{} {:.2f}, ", part, own);
+        others -= own;
+    }
+    warn(
+        "--time {}: exceeded by {:.2f} s ({}start and write {:.2f}); every pixel gets one sample, "
+        "whatever the time",
+        arguments.seconds, over, parts, others);
 }
 
 }  // namespace
@@ -273,7 +299,7 @@ int run_render(const RenderArguments& arguments) {
     warn_if_not_finite(result.image);
 
     const json parameters = make_parameters(options, loaded, result);
-    json stats = make_stats(parameters, loaded, frame.plan(), result, device);
+    json stats = make_stats(parameters, options, loaded, frame.plan(), result, device);
     stats["seconds"]["load"] = load_seconds;
     stats["seconds"]["build"] = build_seconds;
     stats["seconds"]["total"] = seconds_since(start);
@@ -286,6 +312,7 @@ int run_render(const RenderArguments& arguments) {
         for (const auto& [option, path] : files_of(arguments, images))
             if (fs::exists(path)) say("wrote {}\n", path);
     }
+    warn_of_goals(arguments, result, stats["seconds"]);
     return 0;
 }
 

@@ -27,7 +27,7 @@ struct FrameResult {
     uint light_samples = 0;              // of the first pixel sample
     uint later_light_samples = 0;        // of the last one
     double spp = 0;                      // pixel samples, on average where time ended
-    std::optional<ErrorEstimate> error;  // where it was asked for
+    std::optional<ErrorEstimate> error;  // where it was asked for and can be made
     double prepare_seconds = 0;          // clusters, contributions, PDFs; compiling apart
     double render_seconds = 0;           // the rest, likewise
 };
@@ -85,7 +85,7 @@ class Frame {
     void sample(const Visit& visit, Progress& progress);
     void save(unsigned batch, uint end);
     void resume(const FrameState& state);
-    [[nodiscard]] ErrorEstimate estimate_error();
+    void keep_estimate();
     void keep_image();
     [[nodiscard]] double cluster_work(const Tiles& batch) const;
     void report(Progress& progress, const Visit& visit, double work) const;

@@ -13,7 +13,7 @@ struct RenderOptions {
     std::string sampler = "adaptive";
     uint light_samples = 0;   // per pixel sample, see samples_of(); exhaustive takes all lights
     uint spp = 4;             // pixel samples, at most
-    double target_error = 0;  // stop at this relMSE; 0: at spp
+    double target_error = 0;  // stop where relMSE is no more, by its interval's end; 0: at spp
     std::optional<Clock::time_point> deadline;  // stop by then, but for one sample of each pixel
     uint seed = 0;
     unsigned width = 512;
@@ -34,7 +34,7 @@ struct RenderOptions {
     }
     [[nodiscard]] uint most_samples() const { return samples_of(spp - 1); }
 
-    /// Whether the error is estimated from pairs of pixel samples.
+    /// Whether the error is estimated.
     [[nodiscard]] bool estimates_error() const;
 
     /// Pixels of a tile's side: of the clusters, where the sampler leaves it open.
