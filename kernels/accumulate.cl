@@ -2,14 +2,14 @@
 // Stage accumulate: adds one sample of each pixel to the image.
 #include "lib/cells.h"
 #include "lib/sum.h"
+#include "shared/groups.h"
 #include "shared/material.h"
 #include "shared/surface.h"
 
 // image[y * width + x].rgb += weight x (estimates[item] + the surface's emission), cd/m2; .w +=
 // shadow rays. residuals[] belongs to the sum (lib/sum.h), weights[] is the sum of the weights.
-// HAS_PAIRS: samples 2 k and 2 k + 1 of a pixel are a pair, of equal weight: differences[] is the
-// sum of weight x (first - second), in w the weight of all pairs; pending[] the first one until the
-// second comes (`odd`).
+// HAS_GROUPS: the sample belongs to one of ERROR_GROUPS groups: groups[ERROR_GROUPS * pixel +
+// group] is the sum of weight x radiance, in w of weights.
 #if HAS_EMISSION
 #define EMISSION_PARAMETERS , __global const Surface *surfaces, __global const Material *materials
 #define EMISSION_ARGUMENTS , surfaces, materials
@@ -17,18 +17,18 @@
 #define EMISSION_PARAMETERS
 #define EMISSION_ARGUMENTS
 #endif
-#if HAS_PAIRS
-#define PAIR_PARAMETERS , uint odd, __global float4 *pending, __global float4 *differences
-#define PAIR_ARGUMENTS , odd, pending, differences
+#if HAS_GROUPS
+#define GROUP_PARAMETERS , uint group, __global float4 *groups
+#define GROUP_ARGUMENTS , group, groups
 #else
-#define PAIR_PARAMETERS
-#define PAIR_ARGUMENTS
+#define GROUP_PARAMETERS
+#define GROUP_ARGUMENTS
 #endif
 #define IMAGE_PARAMETERS                                                                        \
     __global const float4 *estimates EMISSION_PARAMETERS, float weight, __global float4 *image, \
-        __global float4 *residuals, __global float *weights PAIR_PARAMETERS
+        __global float4 *residuals, __global float *weights GROUP_PARAMETERS
 #define IMAGE_ARGUMENTS \
-    estimates EMISSION_ARGUMENTS, weight, image, residuals, weights PAIR_ARGUMENTS
+    estimates EMISSION_ARGUMENTS, weight, image, residuals, weights GROUP_ARGUMENTS
 
 static void add_sample(Tiles tiles, uint item, IMAGE_PARAMETERS) {
     if (!item_in_image(tiles, item)) return;
@@ -49,11 +49,8 @@ static void add_sample(Tiles tiles, uint item, IMAGE_PARAMETERS) {
     image[pixel] = sum;
     residuals[pixel] = residual;
     weights[pixel] += weight;
-#if HAS_PAIRS
-    if (odd)
-        differences[pixel] += (float4)(pending[pixel].xyz - term.xyz, 2.0f * weight);
-    else
-        pending[pixel] = term;
+#if HAS_GROUPS
+    groups[ERROR_GROUPS * pixel + group] += (float4)(term.xyz, weight);
 #endif
 }
 

@@ -127,8 +127,8 @@ OptionList options_of(const RenderArguments& arguments, const RenderOptions& opt
     return list;
 }
 
-json make_stats(const OptionList& options, const LoadedScene& loaded, const Plan& plan,
-                const FrameResult& result, Device& device) {
+json make_stats(const OptionList& options, bool estimates_error, const LoadedScene& loaded,
+                const Plan& plan, const FrameResult& result, Device& device) {
     json stats = {{"version", MANYLIGHT_VERSION},
                   {"platform", device.info().platform},
                   {"first_light_samples", result.light_samples},
@@ -143,9 +143,10 @@ json make_stats(const OptionList& options, const LoadedScene& loaded, const Plan
     stats["memory_bytes"] = {{"device_peak", device.peak_bytes()},
                              {"planned", plan.total_bytes()},
                              {"matrix", plan.matrix_bytes}};
-    if (result.error)
-        stats["error"] = {{"relmse", result.error->relmse},
-                          {"standard_error", result.error->standard_error}};
+    if (estimates_error)
+        stats["error"] = result.error ? json{{"relmse", result.error->relmse},
+                                             {"standard_error", result.error->standard_error}}
+                                      : json();
     const std::map<std::string, double> stages = device.stage_seconds();
     stats["stage_seconds"] = stages;
     const auto shadows = stages.find("shadows");
@@ -228,23 +229,43 @@ Clock::time_point deadline_of(const RenderArguments& arguments,
 // The parts of a run, in their order, with their seconds: together all of it.
 using Phases = std::vector<std::pair<const char*, double>>;
 
+// "load 0.10, render 2.30".
+std::string describe(const Phases& phases) {
+    std::string out;
+    for (const auto& [name, seconds] : phases)
+        out += fmt::format("{}{} {:.2f}", out.empty() ? "" : ", ", name, seconds);
+    return out;
+}
+
 void print_summary(const RenderOptions& options, const FrameResult& result, const Phases& phases) {
     const std::string later = result.later_light_samples == result.light_samples
                                   ? ""
                                   : fmt::format(", later {}", result.later_light_samples);
     double seconds = 0;
-    std::string parts;
-    for (const auto& [name, part] : phases) {
-        seconds += part;
-        parts += fmt::format("{}{} {:.2f}", parts.empty() ? "" : ", ", name, part);
-    }
+    for (const auto& [name, part] : phases) seconds += part;
     say("{}, {} light samples{}, {:.4g} spp, {} x {}: {:.2f} s ({})\n", options.sampler,
-        result.light_samples, later, result.spp, options.width, options.height, seconds, parts);
-    if (!result.error) return;
-    say("estimated relMSE {:.3g} +- {:.2g} (95%)\n", result.error->relmse,
-        1.96 * result.error->standard_error);
-    if (options.target_error > 0 && result.error->relmse > options.target_error)
-        warn("--target-error {}: not reached", options.target_error);
+        result.light_samples, later, result.spp, options.width, options.height, seconds,
+        describe(phases));
+    if (result.error)
+        say("estimated relMSE {}{:.3g} +- {:.2g} (95%)\n",
+            result.error->is_noise() ? "at least " : "", result.error->relmse,
+            result.error->margin());
+    else if (options.estimates_error())
+        say("no estimate of relMSE: the image is black, or no pixel has two samples\n");
+}
+
+// What was asked for, and is not so.
+void warn_of_goals(const RenderArguments& arguments, const FrameResult& result,
+                   const Phases& phases) {
+    const double target = arguments.options.target_error;
+    if (target > 0 && !result.error)
+        warn("--target-error {}: not reached, as far as is known: there is no estimate", target);
+    else if (target > 0 && result.error->most() > target)
+        warn("--target-error {}: not reached: relMSE may be {:.3g}", target, result.error->most());
+    const double over = seconds_since(process_start()) - arguments.seconds;
+    if (arguments.seconds == 0 || over < 0.05) return;
+    warn("--time {}: exceeded by {:.2f} s ({}); every pixel gets one sample, whatever the time",
+         arguments.seconds, over, describe(phases));
 }
 
 bool is_black(const Image& image) {
@@ -340,7 +361,7 @@ int run_render(const RenderArguments& arguments) {
     }
 
     const OptionList list = options_of(arguments, options, loaded, device, result);
-    json stats = make_stats(list, loaded, frame.plan(), result, device);
+    json stats = make_stats(list, options.estimates_error(), loaded, frame.plan(), result, device);
     if (arguments.top_lights > 0 && pending_signal() == 0) {
         stats["top_lights"] =
             report_top_lights(loaded, arguments.top_lights, options.seed, arguments.quiet);
@@ -361,6 +382,7 @@ int run_render(const RenderArguments& arguments) {
         for (const auto& [option, path] : files_of(arguments, images))
             if (fs::exists(path)) say("wrote {}\n", path);
     }
+    warn_of_goals(arguments, result, phases);
     if (pending_signal() != 0) end_by(pending_signal());
     return 0;
 }

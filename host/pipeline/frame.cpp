@@ -2,6 +2,7 @@
 #include "pipeline/frame.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <optional>
 
 #include "clock.hpp"
@@ -17,13 +18,18 @@
 namespace manylight {
 namespace {
 
-// The first samples, whose error says how many more are needed.
-constexpr uint fewest_samples = 4;
+// Pixel samples of the whole image before its error may stop it: an image of few pixels says little
+// of its error, and the stop would favour images that have missed something.
+constexpr std::size_t fewest_samples = std::size_t{1} << 14;
 
 // Whether a ray may find another surface than the same ray of another sample.
 bool passes_by_chance(const Scene& scene) {
     return std::ranges::any_of(scene.alpha_triangles,
                                [](const AlphaTriangle& t) { return t.second.z < 0; });
+}
+
+uint whole_rounds(uint samples) {
+    return (samples + ERROR_GROUPS - 1) / ERROR_GROUPS * ERROR_GROUPS;
 }
 
 // Adds the time until its end to a total, compiling apart.
@@ -57,11 +63,11 @@ struct Frame::Stages {
     Estimates estimates;
     ImageSum image;
 
-    Stages(Device& device, DeviceScene uploaded, std::size_t pixels, bool pairs)
+    Stages(Device& device, DeviceScene uploaded, std::size_t pixels, bool grouped)
         : scene(std::move(uploaded)),
           gbuffer(device, scene),
-          accumulate(device, scene, pairs),
-          image(device, pixels, pairs) {}
+          accumulate(device, scene, grouped),
+          image(device, pixels, grouped) {}
 };
 
 Frame::Frame(const Device& device, const Scene& scene, const WideBvh& bvh, const Camera& camera,
@@ -89,7 +95,7 @@ float Frame::weight_of(uint i) const {
 }
 
 // Positions in the pixel, and reflections, are stratified over samples. What the error is estimated
-// from has to be independent: the two of a pair then belong to two such sequences.
+// from has to be independent: the even and the odd samples then have such a sequence each.
 PixelSample Frame::position_of(PixelSample sample) const {
     if (!options_.estimates_error()) return sample;
     const uint other = sample.index % 2 == 1 ? 0x9e3779b9u : 0u;
@@ -157,11 +163,9 @@ FrameResult Frame::render(Progress& progress, const Saving& saving, const FrameS
         visit_all(options_.spp, 0, 1, progress);
     if (std::ranges::any_of(done_, [&](uint samples) { return samples != done_[0]; }))
         result_.is_cut_short = true;
+    if (options_.target_error > 0) return std::move(result_);
     if (options_.estimates_error()) {
-        if (!result_.error) result_.error = estimate_error();
-        if (result_.empty_pixels > 0) result_.error.reset();
-        for (auto& [name, layer] : result_.aovs)
-            if (name == "error" && result_.error) layer = result_.error->pixels;
+        keep_estimate();
     } else {
         Stopwatch watch(result_.render_seconds, device_);
         keep_image();
@@ -171,34 +175,34 @@ FrameResult Frame::render(Progress& progress, const Saving& saving, const FrameS
 
 // Renders as many samples as the error so far says are needed, and looks again.
 void Frame::render_to_error(Progress& progress) {
-    uint end = std::min(std::max(fewest_samples, resumed_end_), options_.spp);
+    const std::size_t pixels = std::size_t{options_.width} * options_.height;
+    const uint fewest = whole_rounds(static_cast<uint>((fewest_samples + pixels - 1) / pixels));
+    uint end = std::min(std::max(fewest, resumed_end_), options_.spp);
     double shown = 0;
     double share = 0.2;  // of all work, which is not known yet
     double weight = 0;   // of all samples until `end`
     uint counted = 0;
     while (true) {
         visit_all(end, shown, share, progress);
-        result_.error = estimate_error();
-        const double error = result_.error->relmse;
+        keep_estimate();
+        const std::optional<ErrorEstimate>& error = result_.error;
         const bool late = options_.deadline && Clock::now() >= *options_.deadline;
         if (result_.is_cut_short && is_interrupted()) return;
-        if (error <= options_.target_error || end >= options_.spp || late) {
+        const bool reached = error && error->most() <= options_.target_error;
+        if (reached || end >= options_.spp || late || scene_.lights.empty()) {
             if (saving_.save && end < options_.spp) save(plan_.batches - 1, end);
             return;
         }
         for (; counted < end; ++counted) weight += weight_of(counted);
         // Errors fall as the inverse of the weight.
-        const double needed = weight * 1.02 * error / options_.target_error;
-        const double next = std::min(needed, 4 * weight);
-        double reached = weight;
-        uint pairs_end = end;
-        do {
-            reached += 2 * weight_of(pairs_end);
-            pairs_end += 2;
-        } while (reached < next && pairs_end < options_.spp);
-        end = std::min(pairs_end, options_.spp);
+        const double most = 4 * weight;
+        const double needed = error ? weight * 1.02 * error->most() / options_.target_error : most;
+        const double next = std::min(needed, most);
+        double weight_then = weight;
+        do weight_then += weight_of(end++);
+        while ((weight_then < next || end % ERROR_GROUPS != 0) && end < options_.spp);
         shown = weight / needed;
-        share = (reached - weight) / needed;
+        share = (weight_then - weight) / needed;
     }
 }
 
@@ -328,8 +332,8 @@ void Frame::sample(const Visit& visit, Progress& progress) {
         if (!at_hand) s.gbuffer.trace(batch, position_of(sample), s.surfaces);
         if (!at_hand || i == 0) result_.primary_rays += pixel_count(batch);
         const auto add = [&](const std::optional<Pass>& pass) {
-            s.accumulate.add(batch, pass, s.surfaces, s.estimates.sums, {weight_of(i), i % 2 == 1},
-                             s.image);
+            s.accumulate.add(batch, pass, s.surfaces, s.estimates.sums,
+                             {weight_of(i), i % ERROR_GROUPS}, s.image);
         };
         const auto progress_by = [&](std::size_t samples) {
             device_.finish();
@@ -396,10 +400,7 @@ void Frame::save(unsigned batch, uint end) {
     state.put("sums", s.image.sums);
     state.put("residuals", s.image.residuals);
     state.put("weights", s.image.weights);
-    if (options_.estimates_error()) {
-        state.put("pending", s.image.pending);
-        state.put("differences", s.image.differences);
-    }
+    if (options_.estimates_error()) state.put("groups", s.image.groups);
     if (s.adaptive && !scene_.lights.empty()) s.adaptive->save(state);
     saving_.save(state);
     saved_ = Clock::now();
@@ -425,17 +426,22 @@ void Frame::resume(const FrameState& state) {
     state.restore("sums", s.image.sums);
     state.restore("residuals", s.image.residuals);
     state.restore("weights", s.image.weights);
-    if (options_.estimates_error()) {
-        state.restore("pending", s.image.pending);
-        state.restore("differences", s.image.differences);
-    }
+    if (options_.estimates_error()) state.restore("groups", s.image.groups);
 }
 
-ErrorEstimate Frame::estimate_error() {
+// The image so far, and what its groups of samples say of its error.
+void Frame::keep_estimate() {
     Stopwatch watch(result_.render_seconds, device_);
     keep_image();
-    return manylight::estimate_error(result_.image, stages_->image.differences.download(),
-                                     stages_->image.weights.download());
+    result_.error =
+        estimate_error(options_.width, options_.height, stages_->image.groups.download());
+    for (auto& [name, layer] : result_.aovs) {
+        if (name != "error") continue;
+        if (result_.error)
+            layer = result_.error->pixels;
+        else
+            std::ranges::fill(layer.values, std::numeric_limits<float>::quiet_NaN());
+    }
 }
 
 TileKnowledge Frame::knowledge(uint tile) const { return stages_->adaptive->knowledge(tile); }

@@ -30,7 +30,7 @@ struct FrameResult {
     std::size_t empty_pixels = 0;        // without one
     bool is_cut_short = false;           // some pixels have fewer samples than others, or all
                                          // have fewer than was asked for: by time, an interrupt
-    std::optional<ErrorEstimate> error;  // where it was asked for
+    std::optional<ErrorEstimate> error;  // where it was asked for and can be made
     double prepare_seconds = 0;          // clusters, contributions, PDFs; compiling apart
     double render_seconds = 0;           // the rest, likewise
 };
@@ -89,7 +89,7 @@ class Frame {
     [[nodiscard]] bool is_interrupted() const;
     void save(unsigned batch, uint end);
     void resume(const FrameState& state);
-    [[nodiscard]] ErrorEstimate estimate_error();
+    void keep_estimate();
     void keep_image();
     [[nodiscard]] double cluster_work(const Tiles& batch) const;
     void report(Progress& progress, const Visit& visit, double work) const;

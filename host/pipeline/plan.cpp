@@ -91,7 +91,7 @@ Plan make_plan(const DeviceInfo& device, const Scene& scene, const WideBvh& bvh,
         throw InputError("{}: it has {} lights, and sampler {} takes {} at most", scene.file,
                          scene.lights.size(), options.sampler, most_cut_lights);
     if (options.estimates_error() && options.spp < 2)
-        throw InputError("--spp {}: the error is estimated from pairs of pixel samples",
+        throw InputError("--spp {}: the error is estimated from two or more pixel samples",
                          options.spp);
     plan.clusters = sampler.table == Table::clusters && lights > 0;
     plan.centres = plan.clusters || std::ranges::any_of(options.aovs, [](const std::string& name) {
@@ -108,7 +108,8 @@ Plan make_plan(const DeviceInfo& device, const Scene& scene, const WideBvh& bvh,
     plan.image_bytes = std::size_t{options.width} * options.height *
                        ImageSum::pixel_bytes(options.estimates_error());
     check_buffers(device, scene, bvh, light_tree,
-                  std::size_t{options.width} * options.height * sizeof(float4));
+                  std::size_t{options.width} * options.height * sizeof(float4) *
+                      (options.estimates_error() ? ERROR_GROUPS : 1));
 
     const bool two_surfaces = plan.centres && options.jitters();
     const bool cuts = sampler.table == Table::cuts;

@@ -16,7 +16,7 @@ struct RenderOptions {
     uint light_samples = 0;   // per pixel sample, see samples_of(); exhaustive takes all lights
     uint spp = 4;             // pixel samples, at most
     uint begun_spp = 0;       // likewise, of the render that this one goes on with, if any
-    double target_error = 0;  // stop at this relMSE; 0: at spp
+    double target_error = 0;  // stop where relMSE is no more, by its interval's end; 0: at spp
     std::optional<Clock::time_point> deadline;  // stop by then, but for one sample of each pixel
     std::function<bool()> interrupted;          // stop as soon as may be, once it returns true
     uint seed = 0;
@@ -40,7 +40,7 @@ struct RenderOptions {
 
     [[nodiscard]] uint planned_spp() const { return std::max(spp, begun_spp); }
 
-    /// Whether the error is estimated from pairs of pixel samples.
+    /// Whether the error is estimated.
     [[nodiscard]] bool estimates_error() const;
 
     /// Pixels of a tile's side: of the clusters, where the sampler leaves it open.

@@ -15,19 +15,17 @@ Buffer<T> zeros(Device& device, std::size_t count) {
 
 }  // namespace
 
-ImageSum::ImageSum(Device& device, std::size_t pixels, bool pairs)
+ImageSum::ImageSum(Device& device, std::size_t pixels, bool grouped)
     : sums(zeros<float4>(device, pixels)),
       residuals(zeros<float4>(device, pixels)),
       weights(zeros<float>(device, pixels)) {
-    if (!pairs) return;
-    pending = zeros<float4>(device, pixels);
-    differences = zeros<float4>(device, pixels);
+    if (grouped) groups = zeros<float4>(device, ERROR_GROUPS * pixels);
 }
 
-AccumulateStage::AccumulateStage(Device& device, const DeviceScene& scene, bool pairs)
-    : scene_(scene.arguments), pairs_(pairs) {
+AccumulateStage::AccumulateStage(Device& device, const DeviceScene& scene, bool grouped)
+    : scene_(scene.arguments), grouped_(grouped) {
     auto defines = scene.emission;
-    defines["HAS_PAIRS"] = pairs;
+    defines["HAS_GROUPS"] = grouped;
     add_ = device.kernel("accumulate.cl", "accumulate_add", defines, "accumulate");
     add_pass_ = device.kernel("accumulate.cl", "accumulate_add_pass", defines, "accumulate");
 }
@@ -43,10 +41,7 @@ void AccumulateStage::add(const Tiles& tiles, const std::optional<Pass>& pass,
         .set("image", image.sums)
         .set("residuals", image.residuals)
         .set("weights", image.weights);
-    if (pairs_)
-        arguments.set("odd", uint{weight.odd})
-            .set("pending", image.pending)
-            .set("differences", image.differences);
+    if (grouped_) arguments.set("group", weight.group).set("groups", image.groups);
     if (pass)
         add_pass_.launch(pass_pixels(*pass), arguments.set("pass", *pass));
     else

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "shared/adaptive.h"
+#include "shared/groups.h"
 #include "shared/surface.h"
 #include "stages/device_scene.hpp"
 #include "stages/tiles.hpp"
@@ -12,31 +13,29 @@ namespace manylight {
 
 /// The image's sums over pixel samples, [y * width + x].
 struct ImageSum {
-    /// All zero. `pairs`: whether the error is to be estimated.
-    ImageSum(Device& device, std::size_t pixels, bool pairs);
+    /// All zero. `grouped`: whether the error is to be estimated.
+    ImageSum(Device& device, std::size_t pixels, bool grouped);
 
     Buffer<float4> sums;       // rgb: weighted radiance, cd/m2; w: shadow rays
     Buffer<float4> residuals;  // of the sums, see kernels/lib/sum.h
     Buffer<float> weights;
-    // Samples 2 k and 2 k + 1 are a pair of equal weight; nothing where no error is estimated.
-    Buffer<float4> pending;      // the first of a pair, weighted
-    Buffer<float4> differences;  // rgb: over pairs, weighted; w: their weights
+    Buffer<float4> groups;  // of samples, see estimate_error(); nothing where no error is estimated
 
-    [[nodiscard]] static constexpr std::size_t pixel_bytes(bool pairs) {
-        return (pairs ? 4 : 2) * sizeof(float4) + sizeof(float);
+    [[nodiscard]] static constexpr std::size_t pixel_bytes(bool grouped) {
+        return (grouped ? 2 + ERROR_GROUPS : 2) * sizeof(float4) + sizeof(float);
     }
 };
 
 /// How a sample of a pixel counts.
 struct SampleWeight {
     float weight = 1;
-    bool odd = false;  // whether its number is
+    uint group = 0;
 };
 
 /// Stage accumulate: pixel samples to the image.
 class AccumulateStage {
   public:
-    AccumulateStage(Device& device, const DeviceScene& scene, bool pairs);
+    AccumulateStage(Device& device, const DeviceScene& scene, bool grouped);
 
     /// Adds estimates[item], and to rgb what the surface emits to the camera: of all pixels of
     /// `tiles`, or of a pass over them.
@@ -45,7 +44,7 @@ class AccumulateStage {
 
   private:
     Arguments scene_;
-    bool pairs_;
+    bool grouped_;
     Kernel add_;
     Kernel add_pass_;
 };

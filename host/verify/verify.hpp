@@ -80,7 +80,7 @@ class Verifier {
 
   private:
     [[nodiscard]] Tiles tiles_to_sample(uint light_samples) const;
-    void accumulate(Check& check, bool pairs, bool by_passes);
+    void accumulate(Check& check, bool grouped, bool by_passes);
     void check_surface(Check& check, const Surface& found, uint x, uint y, bool jitter);
     void check_offset(Check& check, const Surface& found, const reference::Ray& ray,
                       const reference::Hit& hit, double shift, const std::string& where);

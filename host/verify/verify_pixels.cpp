@@ -241,24 +241,23 @@ void Verifier::check_material(Check& check, const Surface& found, const referenc
 
 Check Verifier::accumulate() {
     Check check{.stage = "accumulate", .tolerance = "2 eps of the sum (compensated)"};
-    for (const bool pairs : {true, false})
-        for (const bool by_passes : {false, true}) accumulate(check, pairs, by_passes);
+    for (const bool grouped : {true, false})
+        for (const bool by_passes : {false, true}) accumulate(check, grouped, by_passes);
     return check;
 }
 
 // `by_passes`: half of the pixels at a time, as sampler adaptive does.
-void Verifier::accumulate(Check& check, bool pairs, bool by_passes) {
+void Verifier::accumulate(Check& check, bool grouped, bool by_passes) {
     const Tiles tiles =
         by_passes ? middle_tiles(options_.width, options_.height, ADAPTIVE_TILE, 9) : tiles_;
     const Buffer<Surface> surfaces = trace(tiles, {});
     const std::vector<Surface> points = surfaces.download();
     const std::size_t pixels = std::size_t{tiles.width} * tiles.height;
-    ImageSum image(device_, pixels, pairs);
+    ImageSum image(device_, pixels, grouped);
     image.sums.upload(std::vector<float4>(pixels, float4(1e6f, 2, 3, 4)));
-    AccumulateStage stage(device_, device_scene_, pairs);
+    AccumulateStage stage(device_, device_scene_, grouped);
     std::vector<glm::dvec4> expected(pixels, glm::dvec4(1e6f, 2, 3, 4));
-    std::vector<glm::dvec4> firsts(pixels);
-    std::vector<glm::dvec4> differences(pixels, glm::dvec4(0));
+    std::vector<glm::dvec4> groups(ERROR_GROUPS * pixels, glm::dvec4(0));
     double weights = 0;
     for (uint sample = 0; sample < 5; ++sample) {
         std::vector<float4> estimates(item_count(tiles));
@@ -266,7 +265,7 @@ void Verifier::accumulate(Check& check, bool pairs, bool by_passes) {
             estimates[i] = float4(0.013f * static_cast<float>((i + 31 * sample) % 97), 2, 1e-6f, 3);
         const float weight = sample < 2 ? 1.f : 4.f;
         const Buffer<float4> uploaded = device_.upload(estimates);
-        const SampleWeight weighed{weight, sample % 2 == 1};
+        const SampleWeight weighed{weight, sample % ERROR_GROUPS};
         if (by_passes)
             for (const uint first : {0u, 8u})
                 stage.add(tiles, Pass{first, 8, 0, 0, tiles.count, 1}, surfaces, uploaded, weighed,
@@ -280,14 +279,13 @@ void Verifier::accumulate(Check& check, bool pairs, bool by_passes) {
                 glm::dvec4(weight, weight, weight, 1) *
                 reference::pixel_sample_value(points[item], estimates[item], scene_);
             expected[pixel] += value;
-            if (sample % 2 == 0)
-                firsts[pixel] = value;
-            else
-                differences[pixel] += glm::dvec4(glm::dvec3(firsts[pixel] - value), 2 * weight);
+            groups[ERROR_GROUPS * pixel + sample % ERROR_GROUPS] +=
+                glm::dvec4(glm::dvec3(value), weight);
         });
     }
     const std::vector<float4> found = image.sums.download();
-    const std::vector<float4> found_differences = image.differences.download();
+    const std::vector<float4> found_groups =
+        grouped ? image.groups.download() : std::vector<float4>{};
     const std::vector<float> found_weights = image.weights.download();
     reference::for_each_pixel(tiles, [&](uint x, uint y, std::size_t) {
         const std::size_t pixel = std::size_t{y} * tiles.width + x;
@@ -296,11 +294,13 @@ void Verifier::accumulate(Check& check, bool pairs, bool by_passes) {
         for (int c = 0; c < 4; ++c) {
             check.compare(std::abs(found[pixel][c] - expected[pixel][c]),
                           2 * epsilon * expected[pixel][c], fmt::format("{}, channel {}", name, c));
-            if (!pairs) continue;
-            // Differences of single samples, beside which there may be an emitter's radiance.
-            check.compare(std::abs(found_differences[pixel][c] - differences[pixel][c]),
-                          4 * epsilon * (std::abs(differences[pixel][c]) + expected[pixel][c]),
-                          fmt::format("{}, channel {}: difference", name, c));
+            if (!grouped) continue;
+            for (uint g = 0; g < ERROR_GROUPS; ++g) {
+                const double sum = groups[ERROR_GROUPS * pixel + g][c];
+                check.compare(std::abs(found_groups[ERROR_GROUPS * pixel + g][c] - sum),
+                              4 * epsilon * sum,
+                              fmt::format("{}, channel {}: group {}", name, c, g));
+            }
         }
     });
 }
