@@ -264,30 +264,32 @@ def names_with_escapes():
 
 @case
 def stopped_by_its_own_error():
+    """One lamp behind a film with an alpha of 0.97: alone they give 0.1884 and 6.835 cd/m2."""
+    expected = 0.1884 + 0.03 * 6.835
     means = [render("stop.glb", "--width", 4, "--height", 4, "--sampler", "exhaustive",
                     "--target-error", 0.02, "--seed", seed)[0].mean() for seed in range(40)]
     mean, error = numpy.mean(means), numpy.std(means) / math.sqrt(len(means))
-    expect(abs(mean - 0.341) < 3 * error, f"mean {mean:.3f} +- {error:.3f}, not 0.341")
+    expect(abs(mean - expected) < 3 * error, f"mean {mean:.3f} +- {error:.3f}, not {expected:.3f}")
     return f"mean {mean:.3f} +- {error:.3f}"
 
 
-def shows(name, *parts):
-    """Renders, says these words, and is not black."""
+def shows(name, parts, black):
+    """Renders, says these words, and is not black but for the reason that is said."""
     image, words = render(f"files/{name}", "--width", 48, "--height", 36)
     expect(all(part in words for part in parts), words[:300])
-    expect(image.max() > 0, "black")
+    expect(image.max() > 0 if black is None else black in words, "black")
 
 
-def add_file(name, *parts):
+def add_file(name, *parts, black=None):
     def function():
-        shows(name, *parts)
+        shows(name, parts, black)
     function.__name__ = name
     cases.append(function)
 
 
 add_file("non_root_scene_node_kenney_lemon.gltf", "is no root")
 add_file("00_no_scenes.gltf")
-add_file("no_scene_transform_matrices.gltf")
+add_file("no_scene_transform_matrices.gltf", black="has no triangles")
 add_file("meshopt-no-fallback.gltf")
 add_file("quaternion_norm_0.95.gltf", "rotation is no unit quaternion")
 add_file("glb_chunk_length_not_multiple_of_4.glb", "multiple of 4")

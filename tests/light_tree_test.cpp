@@ -235,7 +235,7 @@ TEST(light_tree, narrow_beams_are_not_missed) {
                 Surface surface{};
                 surface.position =
                     float4(glm::vec3(glm::dvec3(0, 2, 0) + (1.0 + unit(engine)) * towards), 1);
-                surface.normal = surface.geometric = float4(glm::vec3(-towards), 0);
+                surface.normal = surface.horizon = float4(glm::vec3(-towards), 0);
                 for (const LightNode& node : tree.nodes)
                     if (node.first <= place && place < node.first + node.count) {
                         ASSERT_GT(reference::importance(node, surface), 0) << angle;

@@ -83,7 +83,7 @@ class Points {
         Surface s = surfaces_[p];
         if (behind) {
             s.normal = -s.normal;
-            s.geometric = {-glm::vec3(s.geometric), s.geometric.w};
+            s.horizon = {-glm::vec3(s.horizon), s.horizon.w};
         }
         Material white{};
         white.base_color = {1, 1, 1, 0};
