@@ -1032,7 +1032,8 @@ class CommandTest(unittest.TestCase):
         self.assertEqual(self.files(), ["image.exr", "state"])
         before = (self.folder / "state").read_bytes()
         self.refuse(*saved, words=["state", "is there already", "--resume"])
-        self.refuse(*saved, "--resume", "--seed", 2, words=["state", "another render"])
+        for other in (["--seed", 2], ["--device-form", "gpu"], ["--hide-emitters"]):
+            self.refuse(*saved, "--resume", *other, words=["state", "another render"])
         (self.folder / "state").write_bytes(before[:-100] + before[-99:])
         self.refuse(*saved, "--resume", words=["state", "damaged"])
         (self.folder / "state").write_bytes(before[:-20] + bytes([before[-20] ^ 1]) + before[-19:])

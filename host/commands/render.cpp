@@ -87,10 +87,6 @@ FrameResult render_frame(Frame& frame, const RenderArguments& arguments,
     Progress progress("rendering", arguments.quiet);
     if (file.empty()) return frame.render(progress);
     const std::string name = frame.name();
-    if (checkpoint && checkpoint->render != name)
-        throw InputError(
-            "--resume: {}: is of another render: the scene, the options or the device differ",
-            file);
     const Saving saving{arguments.checkpoint_seconds,
                         [&](const FrameState& now) { write_checkpoint(file, name, now); }};
     return frame.render(progress, saving, checkpoint ? &checkpoint->state : nullptr);
@@ -340,6 +336,10 @@ int run_render(const RenderArguments& arguments) {
         return pending_signal() != 0;
     };
     Frame frame(device, loaded.scene, bvh, loaded.camera, options);
+    if (checkpoint && checkpoint->render != frame.name())
+        throw InputError(
+            "--resume: {}: is of another render: the scene, the options or the device differ",
+            arguments.checkpoint);
     if (!arguments.quiet) print_plan(loaded, frame.plan(), device.info());
     frame.prepare();
     const KeptSignals kept;
