@@ -725,8 +725,11 @@ class CommandTest(unittest.TestCase):
         self.assertFalse(facts["hit"])
         self.assertIn("lamp-pixel.png", self.files())
         self.write_lamp(lights=False)
-        run = self.run_program("inspect", "lamp.gltf", "--height", 32, "--pixel", "28,17")
+        run = self.run_program("inspect", "lamp.gltf", "--height", 32, "--pixel", "28,16",
+                               "--headlight", "never")
         self.assertIn("no lights", run.stdout)
+        run = self.run_program("inspect", "lamp.gltf", "--height", 32, "--pixel", "28,16")
+        self.assertIn("point light 'headlight'", run.stdout)
 
     def test_inspect_refuses(self):
         scene = self.folder / "x.png"  # a scene by another name

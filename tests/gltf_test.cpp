@@ -166,24 +166,23 @@ TEST(gltf, cameras) {
     EXPECT_THROW((void)find_view(scene, "top"), InputError);
 }
 
-// What a framed view shows of the vertices: the largest part of the image's half width, and height.
+// What a framed view shows of the vertices: the part of the image's width, and height, that they
+// take; they are in its middle.
 glm::dvec2 filled_part(const Scene& scene, double aspect) {
     const Camera camera =
         make_camera(find_view(scene, "", aspect), static_cast<unsigned>(1000 * aspect), 1000);
-    glm::dvec2 most(0);
-    for (std::size_t i = 0; i < scene.indices.size(); ++i) {
-        const glm::dvec3 d =
-            glm::dvec3(scene.vertices[scene.indices[i]]) - glm::dvec3(camera.origin);
+    Bounds image;
+    for (const std::uint32_t vertex : scene.indices) {
+        const glm::dvec3 d = glm::dvec3(scene.vertices[vertex]) - glm::dvec3(camera.origin);
         const double depth = glm::dot(d, glm::dvec3(camera.forward));
         EXPECT_GT(depth, 0);
-        int k = 0;
-        for (const float4& side : {camera.right, camera.up}) {
-            const glm::dvec3 a(side);
-            most[k] = std::max(most[k], std::abs(glm::dot(d, a) / glm::dot(a, a)) / depth);
-            ++k;
-        }
+        const auto along = [&](const glm::dvec3& side) {
+            return glm::dot(d, side) / glm::dot(side, side) / depth;
+        };
+        image.add({along(glm::dvec3(camera.right)), along(glm::dvec3(camera.up)), 0});
     }
-    return most;
+    EXPECT_LT(glm::length(image.centre()), 1e-3);
+    return glm::dvec2(image.upper - image.lower) / 2.0;
 }
 
 // Without a camera the whole scene is in view and fills it, whatever its size and shape.

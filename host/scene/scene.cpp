@@ -2,6 +2,7 @@
 #include "scene/scene.hpp"
 
 #define GLM_ENABLE_EXPERIMENTAL
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
@@ -12,35 +13,73 @@
 namespace manylight {
 namespace {
 
-// How far triangles reach along directions: the largest dot products with their vertices.
-template <std::size_t N>
-std::array<double, N> reaches(const Scene& scene, const std::array<glm::dvec3, N>& directions) {
-    std::array<double, N> most;
-    most.fill(-std::numeric_limits<double>::infinity());
-    const auto add = [&](const glm::dvec3& p) {
-        bool grew = false;
-        for (std::size_t i = 0; i < N; ++i) {
-            const double reach = glm::dot(p, directions[i]);
-            grew |= reach > most[i];
-            most[i] = std::max(most[i], reach);
-        }
-        return grew;
-    };
-    for (std::size_t i = 0; i < 3 * scene.own_triangle_count(); ++i)
-        add(scene.vertices[scene.indices[i]]);
-    for (const Instance& in : scene.instances) {
-        const SharedMesh& mesh = scene.shared_meshes[in.mesh];
-        const std::array<double, N> before = most;
-        bool grew = false;  // by its box
-        for (int k = 0; k < 8; ++k) grew |= add(point_to_world(in, mesh.bounds.corner(k)));
-        if (!grew) continue;
-        most = before;
-        const std::size_t first = 3 * std::size_t{mesh.first_triangle};
-        for (std::size_t i = 0; i < 3 * std::size_t{mesh.triangle_count}; ++i)
-            add(point_to_world(in, scene.vertices[scene.indices[first + i]]));
+// The vertices of triangles, where they are seen.
+class SeenVertices {
+  public:
+    explicit SeenVertices(const Scene& scene) : scene_(scene), used_(scene.vertices.size()) {
+        for (const std::uint32_t vertex : scene.indices) used_[vertex] = true;
     }
-    return most;
-}
+
+    // The one of the largest score, a linear function of the place or a ratio of two.
+    template <class Score>
+    [[nodiscard]] glm::dvec3 farthest(const Score& score) const {
+        double most = -std::numeric_limits<double>::infinity();
+        glm::dvec3 out(0);
+        const auto exceeds = [&](const glm::dvec3& p) { return score(p) > most; };
+        const auto add = [&](const glm::dvec3& p) {
+            if (!exceeds(p)) return;
+            most = score(p);
+            out = p;
+        };
+        const std::size_t own = scene_.shared_meshes.empty()
+                                    ? scene_.vertices.size()
+                                    : scene_.shared_meshes.front().first_vertex;
+        for (std::size_t v = 0; v < own; ++v)
+            if (used_[v]) add(scene_.vertices[v]);
+        for (const Instance& in : scene_.instances) {
+            const SharedMesh& mesh = scene_.shared_meshes[in.mesh];
+            bool may_exceed = false;
+            for (int k = 0; k < 8; ++k)
+                may_exceed |= exceeds(point_to_world(in, mesh.bounds.corner(k)));
+            if (!may_exceed) continue;
+            for (std::size_t v = mesh.first_vertex; v < mesh.first_vertex + mesh.vertex_count; ++v)
+                if (used_[v]) add(point_to_world(in, scene_.vertices[v]));
+        }
+        return out;
+    }
+
+    [[nodiscard]] double reach(const glm::dvec3& direction) const {
+        const auto along = [&](const glm::dvec3& p) { return glm::dot(p, direction); };
+        return along(farthest(along));
+    }
+
+    // Where along `side` an eye is, `back` behind, from which all is as far to this side of the
+    // image's middle as to the other.
+    [[nodiscard]] double middle(const glm::dvec3& side, const glm::dvec3& back, double eye_back,
+                                double start) const {
+        double middle = start;
+        for (int i = 0; i < 8; ++i) {
+            const auto depth = [&](const glm::dvec3& p) { return eye_back - glm::dot(p, back); };
+            // A corner of an instance's box may be behind the eye.
+            const auto off = [&](const glm::dvec3& p, double sign) {
+                return depth(p) > 0 ? sign * (glm::dot(p, side) - middle) / depth(p)
+                                    : std::numeric_limits<double>::infinity();
+            };
+            const glm::dvec3 a = farthest([&](const glm::dvec3& p) { return off(p, 1); });
+            const glm::dvec3 b = farthest([&](const glm::dvec3& p) { return off(p, -1); });
+            // From there, these two are: (a - middle) / depth(a) = (middle - b) / depth(b).
+            const double next = (glm::dot(a, side) * depth(b) + glm::dot(b, side) * depth(a)) /
+                                (depth(a) + depth(b));
+            if (next == middle) break;
+            middle = next;
+        }
+        return middle;
+    }
+
+  private:
+    const Scene& scene_;
+    std::vector<bool> used_;
+};
 
 // The share of the image, along its width or its height, that a framed scene fills.
 constexpr double filled = 0.85;
@@ -53,20 +92,23 @@ View frame_all(const Scene& scene, double aspect) {
     const glm::dvec3 back = glm::normalize(glm::dvec3(0.35, 0.3, 1.0));
     const glm::dvec3 right = glm::normalize(glm::cross(glm::dvec3(0, 1, 0), back));
     const glm::dvec3 up = glm::cross(back, right);
-    // A point p is in the filled part of what is seen from e where, along each side of the image,
-    // dot(p, side + half back) <= dot(e, side + half back).
-    const double half_height = filled * view.half_height;
-    const double half_width = half_height * aspect;
-    const auto [r, l, u, d, near] =
-        reaches<5>(scene, {right + half_width * back, half_width * back - right,
-                           up + half_height * back, half_height * back - up, back});
     glm::dvec3 eye(0, 0, 1);  // along right, up and back
-    if (std::isfinite(near)) {
-        eye = {(r - l) / 2, (u - d) / 2,
-               std::max((r + l) / (2 * half_width), (u + d) / (2 * half_height))};
+    if (scene.seen_triangle_count() > 0) {
+        const SeenVertices seen(scene);
+        // A point p is in the filled part of what is seen from e where, for each side of the image,
+        // dot(p, side + half back) <= dot(e, side + half back).
+        const double half_height = filled * view.half_height;
+        const double half_width = half_height * aspect;
+        const double r = seen.reach(right + half_width * back);
+        const double l = seen.reach(half_width * back - right);
+        const double u = seen.reach(up + half_height * back);
+        const double d = seen.reach(half_height * back - up);
         // All may be on a line through the eye, or a point.
         const double size = scene.bounds().radius();
-        eye.z = std::max(eye.z, near + (size > 0 ? 1e-3 * size : 1));
+        eye.z = std::max({(r + l) / (2 * half_width), (u + d) / (2 * half_height),
+                          seen.reach(back) + (size > 0 ? 1e-3 * size : 1)});
+        eye.x = seen.middle(right, back, eye.z, (r - l) / 2);
+        eye.y = seen.middle(up, back, eye.z, (u - d) / 2);
     }
     view.to_world = {glm::dvec4(right, 0), glm::dvec4(up, 0), glm::dvec4(back, 0),
                      glm::dvec4(eye.x * right + eye.y * up + eye.z * back, 1)};

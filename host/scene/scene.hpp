@@ -170,8 +170,8 @@ void add_emitters(Scene& scene, unsigned points);
 void add_headlight(Scene& scene, const View& view);
 
 /// The camera of that name, or the first for an empty name; a scene without cameras is framed from
-/// the front, above and right, so that what it shows fills 85% of an image of that width / height,
-/// or of one that is as high. Throws InputError for a name that the file does not have.
+/// the front, above and right, so that its triangles fill 85% of the width or of the height of an
+/// image of that width / height. Throws InputError for a name that the file does not have.
 [[nodiscard]] View find_view(const Scene& scene, const std::string& name, double aspect = 16.0 / 9);
 
 /// The camera for an image of that size; keeps the view's height where the aspect differs. `shift`
