@@ -160,7 +160,38 @@ class CommandTest(unittest.TestCase):
         self.assertGreater(stats["error"]["standard_error"], 0)
         run = self.run_program("render", self.cornell, "--height", 32, "--target-error", 1e-9,
                                "--spp", 4, "-o", "a.exr")
-        self.assertIn("--target-error 1e-09: not reached", run.stderr)
+        self.assertIn("--target-error 1e-09: not reached: relMSE may be", run.stderr)
+
+    def test_an_estimate_that_cannot_be_made_is_none(self):
+        run = self.run_program("render", self.cornell, "--height", 32, "--target-error", 0.01,
+                               "--time", 0.001, "-o", "a.exr", "--stats", "s.json")
+        stats = json.loads((self.folder / "s.json").read_text())
+        self.assertEqual(stats["spp"], 1)
+        self.assertIsNone(stats["error"])
+        self.assertIn("no estimate of relMSE", run.stdout)
+        self.assertIn("--target-error 0.01: not reached", run.stderr)
+        self.assertRegex(run.stderr, r"--time 0.001: exceeded by [0-9.]+ s \(load .*compile .*\); "
+                                     "every pixel gets one sample")
+        # Without lights there is nothing to wait for.
+        self.write_lamp(lights=False)
+        run = self.run_program("render", "lamp.gltf", "--height", 16, "--target-error", 0.01, "-q",
+                               "--stats", "s.json")
+        stats = json.loads((self.folder / "s.json").read_text())
+        self.assertIsNone(stats["error"])
+        self.assertGreater(stats["spp"], 1)
+        self.assertIn("--target-error 0.01: not reached", run.stderr)
+        # Nor is more said of errors than there is to say.
+        run = self.run_program("render", self.cornell, "--height", 16, "--stats", "s.json")
+        self.assertNotIn("error", json.loads((self.folder / "s.json").read_text()))
+        self.assertNotIn("relMSE", run.stdout)
+
+    def test_mostly_noise_is_said(self):
+        run = self.run_program("render", SCENES / "blinds.glb", "--height", 32, "--sampler",
+                               "uniform", "--light-samples", 1, "--aov", "error", "-o", "a.exr")
+        self.assertIn("(95%), or more: the image is mostly noise", run.stdout)
+        run = self.run_program("render", self.cornell, "--height", 32, "--spp", 16, "--aov",
+                               "error", "-o", "a.exr")
+        self.assertNotIn("or more", run.stdout)
 
     def test_stops_in_time(self):
         self.run_program("render", self.cornell, "--height", 32, "--time", 0.2, "-o", "a.exr",
@@ -562,8 +593,8 @@ class CommandTest(unittest.TestCase):
                 (["--time", 0], ["--time", "0"]),
                 (["--time", "soon"], ["--time", "soon"]),
                 (["--target-error", "small"], ["--target-error", "small"]),
-                (["--target-error", 0.1, "--spp", 1], ["--spp 1", "pairs"]),
-                (["--aov", "error", "--spp", 1], ["--spp 1", "pairs"]),
+                (["--target-error", 0.1, "--spp", 1], ["--spp 1", "two or more"]),
+                (["--aov", "error", "--spp", 1], ["--spp 1", "two or more"]),
                 (["--aov", "smell"], ["--aov", "smell"]),
                 (["--aov", "cluster", "--sampler", "power"], ["--aov", "cluster", "power"]),
                 (["--lamp-scale", 0], ["--lamp-scale", "0"]),

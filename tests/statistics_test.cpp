@@ -235,8 +235,8 @@ TEST(statistics, cuts_of_many_lights_are_unbiased) {
         }
 }
 
-// However rendering stops: where the error is small enough, and in the middle of a sample where
-// time is over.
+// However rendering stops: where the error is small enough (which is unbiased but for a small part
+// of the noise, see docs/stopping.md), and in the middle of a sample where time is over.
 TEST(statistics, stopped_renders_are_unbiased) {
     const Device& device = test::devices().front();
     const test::TestScene scene = small("points");

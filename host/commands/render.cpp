@@ -243,9 +243,9 @@ void print_summary(const RenderOptions& options, const FrameResult& result, cons
         result.light_samples, later, result.spp, options.width, options.height, seconds,
         describe(phases));
     if (result.error)
-        say("estimated relMSE {}{:.3g} +- {:.2g} (95%)\n",
-            result.error->is_noise() ? "at least " : "", result.error->relmse,
-            result.error->margin());
+        say("estimated relMSE {:.3g} +- {:.2g} (95%){}\n", result.error->relmse,
+            result.error->margin(),
+            result.error->is_noise() ? ", or more: the image is mostly noise" : "");
     else if (options.estimates_error())
         say("no estimate of relMSE: the image is black, or no pixel has two samples\n");
 }
