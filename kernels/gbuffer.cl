@@ -107,6 +107,39 @@ static float3 map_normal(float3 texel, float scale, float3 normal, float4 tangen
     return dot(mapped, mapped) > 0.0f ? normalize(mapped) : normal;
 }
 
+// What rounding took from a sum, a difference and a product: with it they are exact (Knuth, "The
+// Art of Computer Programming" 2, 4.2.2; Dekker, "A Floating-Point Technique for Extending the
+// Available Precision", 1971).
+static float3 lost_by_sum(float3 a, float3 b, float3 sum) {
+    const float3 from_b = sum - a;
+    return (a - (sum - from_b)) + (b - from_b);
+}
+
+static float3 upper_half(float3 a) {
+    const float3 c = 4097.0f * a;
+    return c - (c - a);
+}
+
+static float3 lost_by_product(float3 a, float3 b, float3 product) {
+    const float3 a1 = upper_half(a), b1 = upper_half(b);
+    const float3 a2 = a - a1, b2 = b - b1;
+    return ((a1 * b1 - product) + a1 * b2 + a2 * b1) + a2 * b2;
+}
+
+// The point of a triangle with those weights of vertices 1 and 2, rounded once: in its plane
+// however large the triangle is.
+static float3 point_of(float3 v0, float3 v1, float3 v2, float2 weights) {
+    const float3 u = (float3)(weights.x), v = (float3)(weights.y);
+    const float3 edge1 = v1 - v0, edge2 = v2 - v0;
+    const float3 along1 = edge1 * u, along2 = edge2 * v;
+    const float3 sum1 = v0 + along1;
+    const float3 sum2 = sum1 + along2;
+    const float3 lost1 = lost_by_product(edge1, u, along1) + lost_by_sum(v1, -v0, edge1) * u;
+    const float3 lost2 = lost_by_product(edge2, v, along2) + lost_by_sum(v2, -v0, edge2) * v;
+    const float3 lost = lost_by_sum(v0, along1, sum1) + lost_by_sum(sum1, along2, sum2);
+    return sum2 + (lost1 + lost2 + lost);
+}
+
 // The surface where a ray hits a triangle; ~0: none.
 static void write_surface(Tiles tiles, Camera camera, __global Surface* surfaces, uint item,
                           Ray ray, uint triangle, float distance, MESH_PARAMETERS) {
@@ -141,14 +174,14 @@ static void write_surface(Tiles tiles, Camera camera, __global Surface* surfaces
     if (dot(smooth, smooth) > 0.0f)
         normal = normalize(dot(smooth, geometric) < 0.0f ? -smooth : smooth);
 #endif
-    const float3 along1 = edge1 * weights.x, along2 = edge2 * weights.y;
-    float3 position = v0 + along1 + along2;
-    float3 parts = fabs(v0) + fabs(along1) + fabs(along2);
+    const float3 sizes = fabs(v0) + fabs(edge1 * weights.x) + fabs(edge2 * weights.y);
+    float3 position = point_of(v0, v1, v2, weights);
     // In a triangle that is larger than the view, weights are too coarse to tell where in its plane
     // the point is; the ray tells.
     const float3 seen = ray.origin + ray.direction * distance;
-    if (largest_part(fabs(ray.origin) + fabs(ray.direction) * distance) < largest_part(parts))
+    if (largest_part(fabs(ray.origin) + fabs(ray.direction) * distance) < largest_part(sizes))
         position = seen + geometric * dot(geometric, position - seen);
+    float3 parts = fabs(position) + 1e-6f * sizes;
 #if HAS_INSTANCES
     if (in) {
         const float3 place = place_of(in);

@@ -41,8 +41,10 @@ namespace {
 // How far off a triangle shadow rays start; see OFFSET_SCALE.
 double shadow_offset(const Triangle& triangle, const Hit& hit) {
     const glm::dvec3 v0 = triangle.corner(0);
-    const glm::dvec3 parts = glm::abs(v0) + glm::abs(hit.u * (triangle.corner(1) - v0)) +
-                             glm::abs(hit.v * (triangle.corner(2) - v0)) +
+    const glm::dvec3 along1 = hit.u * (triangle.corner(1) - v0);
+    const glm::dvec3 along2 = hit.v * (triangle.corner(2) - v0);
+    const glm::dvec3 parts = glm::abs(v0 + along1 + along2) +
+                             1e-6 * (glm::abs(v0) + glm::abs(along1) + glm::abs(along2)) +
                              triangle.frame_rounding();
     return OFFSET_SCALE * glm::dot(glm::abs(glm::normalize(triangle.face())), parts);
 }

@@ -45,13 +45,19 @@ Tracer::Tracer(const Scene& scene) : scene_(scene), order_(scene.own_triangle_co
 }
 
 int Tracer::build(uint begin, uint end) {
-    Node node{glm::dvec3(1e300), glm::dvec3(-1e300), begin, end};
-    for (uint i = begin; i < end; ++i)
+    Node node{glm::dvec3(1e300), glm::dvec3(-1e300), begin, end, 1};
+    for (uint i = begin; i < end; ++i) {
+        const Triangle triangle(scene_, order_[i]);
+        double longest = 0;
         for (int k = 0; k < 3; ++k) {
-            const glm::dvec3 corner = Triangle(scene_, order_[i]).corner(k);
+            const glm::dvec3 corner = triangle.corner(k);
             node.lower = glm::min(node.lower, corner);
             node.upper = glm::max(node.upper, corner);
+            longest = std::max(longest, glm::distance(corner, triangle.corner((k + 1) % 3)));
         }
+        const double area = glm::length(triangle.face());
+        if (area > 0) node.stretch = std::max(node.stretch, longest * longest / area);
+    }
     if (end - begin > 4) {
         const glm::dvec3 size = node.upper - node.lower;
         const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
@@ -160,17 +166,14 @@ std::optional<Tracer::RoundedHit> Tracer::meet_plane(uint triangle, const Ray& r
                    0,
                    0,
                    0};
-    // Kernels' edges are rounded.
-    met.moved =
-        epsilon * glm::dot(glm::abs(n), glm::abs(met.hit.u * e1) + glm::abs(met.hit.v * e2)) / size;
     // What cancels in the normal, a cross product. Kernels take no more than 3 times that for it,
     // and pass over 4 units in the last place; what they compute is off by as much at most.
     const glm::dvec3 f = glm::abs(e1);
     const glm::dvec3 g = glm::abs(e2);
     const glm::dvec3 m(f.y * g.z + f.z * g.y, f.z * g.x + f.x * g.z, f.x * g.y + f.y * g.x);
     const double most = std::max({std::abs(d.x), std::abs(d.y), std::abs(d.z)});
-    met.start = met.moved + 16 * epsilon * glm::dot(glm::abs(s), m) / size;
-    met.before_end = 16 * epsilon * most * (m.x + m.y + m.z) / size;
+    met.start = 17 * epsilon * glm::dot(glm::abs(s), m) / size;
+    met.before_end = 17 * epsilon * most * (m.x + m.y + m.z) / size;
     if (!tested.is_of_instance()) return met;
     // The ray in the mesh's frame: a difference, a matrix and sums of three products, rounded.
     const auto moved_by = [&](const glm::dvec3& v) {
@@ -180,9 +183,8 @@ std::optional<Tracer::RoundedHit> Tracer::meet_plane(uint triangle, const Ray& r
     };
     const glm::dvec3 origin = moved_by(from_place);
     const glm::dvec3 direction = moved_by(ray.direction);
-    const double along = glm::dot(glm::abs(n), origin + std::abs(t) * direction) / size;
-    met.moved += along;
-    met.start += along;
+    met.moved = glm::dot(glm::abs(n), origin + std::abs(t) * direction) / size;
+    met.start += met.moved;
     met.beyond += glm::length(origin + std::abs(t) * direction) * edge * glm::length(d) / size;
     return met;
 }
@@ -204,7 +206,8 @@ bool Tracer::rounding_decides(const Ray& ray) const {
         open.pop_back();
         const glm::dvec3 reach =
             glm::max(glm::abs(node.lower - ray.origin), glm::abs(node.upper - ray.origin));
-        const glm::dvec3 pad(4e-6 * glm::length(reach));
+        // Kernels hit a triangle as far beyond each edge's line, and so beyond a sliver's end.
+        const glm::dvec3 pad(4e-6 * glm::length(reach) * node.stretch);
         if (!meets_box(line, node.lower - pad, node.upper + pad, ray.end + 2)) continue;
         if (node.left >= 0) {
             open.push_back(node.right);

@@ -65,6 +65,7 @@ class Tracer {
     struct Node {
         glm::dvec3 lower, upper;
         uint begin, end;            // of order_
+        double stretch;             // the most of its triangles' lengths over their heights
         int left = -1, right = -1;  // nodes; -1 for a leaf
     };
     int build(uint begin, uint end);
@@ -73,7 +74,8 @@ class Tracer {
     struct RoundedHit {
         Hit hit;
         double beyond;  // weights may be so far outside, and it is hit
-        double moved;   // by how much t may be another one, as the triangle and the ray are rounded
+        double moved;   // by how much t may be another one, an instance's, as the ray is rounded in
+                        // its frame
         // Where t is below `start`, or above the ray's end times 1 - `before_end` less `start`, the
         // kernels may pass over it.
         double start, before_end;

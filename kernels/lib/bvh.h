@@ -111,12 +111,13 @@ typedef struct PreparedBlock {
 
 // A ray that starts or ends on a triangle must not be occluded by it, however large it is and
 // however rounded its plane. With e = 2^-23, vertex 0 at a from the origin and edges f and g, the
-// normal is n_x = f_y g_z - f_z g_y, off by e m_x where m_x = |f_y g_z| + |f_z g_y|, and so on; a
-// is off by e/2, and a . n is rounded three times more on its way: |a|.m 3 e in all. A determinant
-// d . n with a direction that is off by e/2 itself is off by |d|.m 3 e likewise. m bounds what
-// cancels in the normal, axis by axis: of a level ground, only heights above it count, not how far
-// it goes. (Pharr, Jakob, Humphreys, "Physically Based Rendering" 4th ed., 6.8.7, bounds a . n so.)
-#define ROUNDING_SCALE 4.8e-7f
+// normal is n_x = f_y g_z - f_z g_y, off by 2 e m_x where m_x = |f_y g_z| + |f_z g_y|, half of that
+// because edges are rounded, and so on; a is off by e/2, and a . n is rounded three times more on
+// its way: |a|.m 4 e in all. A determinant d . n with a direction that is off by e/2 itself is off
+// by as much times |d|.m. m bounds what cancels in the normal, axis by axis: of a level ground,
+// only heights above it count, not how far it goes. (Pharr, Jakob, Humphreys, "Physically Based
+// Rendering" 4th ed., 6.8.7, bounds a . n so.)
+#define ROUNDING_SCALE 5e-7f
 
 static PreparedBlock prepare_block(__global const float_k* block, float3 origin) {
     const float_k ax = block[0] - origin.x, ay = block[1] - origin.y, az = block[2] - origin.z;

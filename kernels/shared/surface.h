@@ -21,18 +21,18 @@ typedef struct Surface {
 SHARED_SIZE(Surface, 64)
 
 /// Shadow rays start off a surface with unit normal n by this times the sum over axes of |n_i| p_i,
-/// where p bounds what the point is made of, along each axis: |v_i| + |a_i| + |b_i| for a vertex
-/// and the parts of two edges that add up to it, and of an instance
-/// (|to_world| |to_object| |c|)_i besides, where c is the farthest corner from its place. They end
+/// where p bounds what single precision rounds of the point, along each axis: its coordinate, of an
+/// instance (|to_world| |to_object| |c|)_i besides, where c is the farthest corner from its place,
+/// and 1e-6 of the sizes of what the point is made of, a vertex and parts of two edges. They end
 /// off an emitter likewise, with p the largest coordinates of its vertices.
 ///
-/// Derivation, with e = 2^-23 (each rounding is of e/2): edges are differences of vertices, and
-/// products with weights and sums are rounded, which moves the point off its plane along axis i by
-/// no more than 2 e p_i; putting it off the plane rounds twice more, e p_i. To an instance's frame
-/// and back, differences, matrices and sums of three products come to 7 e of their part. A point of
-/// an emitter is made of an area's corner and sides, each rounded once: 8 e p_i. This is 10 e.
-/// What the test of a triangle rounds is not in it (see prepare_block() in kernels/lib/bvh.h).
-/// (After Pharr, Jakob, Humphreys, "Physically Based Rendering" 4th ed., 6.8.)
+/// Derivation, with e = 2^-23 (each rounding is of e/2): the point is a sum without rounding that
+/// is rounded once, or twice on large triangles, and putting it off the plane rounds it again: 2 e
+/// of its coordinates, and e times that of what it is made of. To an instance's frame and back,
+/// differences, matrices and sums of three products come to 7 e of their part. A point of an
+/// emitter is a sum of an area's corner and sides, each rounded before: 8 e. This is 10 e. What the
+/// test of a triangle rounds is not in it (see prepare_block() in kernels/lib/bvh.h). (After Pharr,
+/// Jakob, Humphreys, "Physically Based Rendering" 4th ed., 6.8.)
 #define OFFSET_SCALE 1.2e-6f
 
 SHARED_END
