@@ -754,7 +754,7 @@ class CommandTest(unittest.TestCase):
         self.run_program(*early, "--resume")
         again = json.loads((self.folder / "early.json").read_text())
         self.assertEqual(again["rays"], rays)
-        self.assertEqual(again["later_light_samples"], 4)
+        self.assertEqual(again["spp"], 16)  # 16,384 pixel samples in all
 
     def test_interrupts_leave_no_litter(self):
         run = subprocess.Popen([PROGRAM, "render", self.cornell, "--height", "64", "-q", "--spp",
