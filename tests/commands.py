@@ -1091,7 +1091,7 @@ class CommandTest(unittest.TestCase):
         self.run_program(*early, "--resume")
         again = json.loads((self.folder / "early.json").read_text())
         self.assertEqual(again["rays"], rays)
-        self.assertEqual(again["later_light_samples"], 4)
+        self.assertEqual(again["spp"], 16)  # 16,384 pixel samples in all
 
     def test_a_checkpoint_becomes_an_image_at_any_time(self):
         arguments = ["render", self.cornell, "--height", "40", "-q", "-o", "image.exr"]
