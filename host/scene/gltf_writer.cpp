@@ -186,10 +186,11 @@ void GltfWriter::add_directional(glm::vec3 direction, glm::vec3 illuminance) {
 
 void GltfWriter::add_camera(const std::string& name, glm::vec3 eye, glm::vec3 target, float yfov,
                             float aspect) {
+    const double near = std::min(0.01, 0.01 * double{glm::distance(eye, target)});
     json_["cameras"].push_back(
         {{"name", name},
          {"type", "perspective"},
-         {"perspective", {{"yfov", yfov}, {"aspectRatio", aspect}, {"znear", 0.01}}}});
+         {"perspective", {{"yfov", yfov}, {"aspectRatio", aspect}, {"znear", near}}}});
     const glm::mat4 to_world = glm::inverse(glm::lookAt(eye, target, glm::vec3(0, 1, 0)));
     json_["nodes"].push_back(
         {{"name", name}, {"camera", json_["cameras"].size() - 1}, {"matrix", elements(to_world)}});
