@@ -47,7 +47,8 @@ class GltfWriter {
                   float outer);
     /// Illuminance in lx.
     void add_directional(glm::vec3 direction, glm::vec3 illuminance);
-    /// A perspective camera; yfov in radians.
+    /// A perspective camera; yfov in radians. Its near plane is at 1 cm, or nearer where the target
+    /// is nearer than 1 m.
     void add_camera(const std::string& name, glm::vec3 eye, glm::vec3 target, float yfov,
                     float aspect);
     /// The number of oriented points that the emitters are meant to be rendered with.
