@@ -228,7 +228,7 @@ TEST(gltf, instances_are_framed) {
 // Lights at the camera: where it is, and what it gives a white surface there.
 TEST(gltf, headlights) {
     GltfTest file;
-    file.document["nodes"][0]["translation"] = {0, 0, -4};
+    file.document["nodes"][0]["translation"] = {0, 0, -0.9};
     Scene scene = file.load();
     EXPECT_TRUE(is_dark(scene));
     View view;
@@ -238,7 +238,7 @@ TEST(gltf, headlights) {
     EXPECT_FALSE(is_dark(scene));
     EXPECT_EQ(scene.lights[0].position, float4(0, 0, -0.5f, LIGHT_POINT));
     EXPECT_EQ(scene.light_names.back(), "headlight");
-    const double d2 = 0.25 + 0.25 + 3.5 * 3.5;  // to the middle of the triangle's bounds
+    const double d2 = 0.25 + 0.25 + 0.4 * 0.4;  // to the middle of the triangle's bounds
     EXPECT_NEAR(scene.lights[0].emission.r / d2, M_PI, 1e-5);
     EXPECT_NEAR(scene.lights[0].emission.w / (4 * M_PI * M_PI * d2), 1, 1e-5);
     view.orthographic = true;
