@@ -90,9 +90,12 @@ class GltfTest {
     }
 };
 
+// In the file's frame.
 [[nodiscard]] inline std::vector<glm::vec3> triangle(const Scene& scene, std::size_t t) {
-    return {scene.vertices[scene.indices[3 * t]], scene.vertices[scene.indices[3 * t + 1]],
-            scene.vertices[scene.indices[3 * t + 2]]};
+    const auto corner = [&](std::size_t k) {
+        return glm::vec3(scene.in_file(scene.vertices[scene.indices[3 * t + k]]));
+    };
+    return {corner(0), corner(1), corner(2)};
 }
 
 inline void expect_near(glm::vec3 found, glm::vec3 expected) {

@@ -188,7 +188,7 @@ glm::dvec3 find_origin(const Bounds& bounds) {
     const glm::dvec3 lower(bounds.lower);
     const glm::dvec3 upper(bounds.upper);
     const double side = glm::compMax(upper - lower);
-    if (!(glm::compMax(glm::max(lower, -upper)) > side)) return glm::dvec3(0);
+    if (!(glm::compMax(glm::max(lower, -upper)) > 16 * side)) return glm::dvec3(0);
     const double unit = std::exp2(std::ceil(std::log2(std::max(side, 1e-3))));
     return glm::round((lower + upper) / 2.0 / unit) * unit;
 }

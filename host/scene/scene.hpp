@@ -66,8 +66,8 @@ struct SharedMesh {
 };
 
 struct Scene {
-    std::string file;                       // as the user named it
-    std::vector<std::string> files;         // beside it, that it names
+    std::string file;                // as the user named it
+    std::vector<std::string> files;  // beside it, that it names
     // Where positions are counted from, in the file's frame, m: 0, or near the middle of a scene
     // that lies far from the file's own origin (see find_origin()).
     glm::dvec3 origin{0};
@@ -155,10 +155,10 @@ struct Features {
 void add_emitters(Scene& scene, unsigned points);
 
 /// Where a scene's positions are to be counted from, given its bounds in the file's frame: so that
-/// single precision tells its shapes as well as it can wherever it lies. The file's origin, unless
-/// the bounds lie farther from that along an axis than their longest side; then their centre,
-/// rounded to a multiple of a power of 2 no less than that side: a scene that is moved by such a
-/// multiple has the very same positions as before.
+/// single precision tells its shapes wherever it lies. The file's origin, unless the bounds lie
+/// farther from that, along an axis, than 16 times their longest side, where 4 of 24 bits would be
+/// lost; then their centre, rounded to a multiple of a power of 2 no less than that side: a scene
+/// that is moved by such a multiple has the very same positions as before.
 [[nodiscard]] glm::dvec3 find_origin(const Bounds& bounds);
 /// Whether nothing of a scene shows: no light is left after add_emitters(), and nothing is unlit.
 [[nodiscard]] bool is_dark(const Scene& scene);
