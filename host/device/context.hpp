@@ -43,6 +43,11 @@ struct Device::Context {
 };
 
 struct Kernel::Built {
+    struct Parameter {
+        std::string name;
+        std::string type;  // as the driver names it: "uint", "float4*"
+    };
+
     Device::Context* context;  // which the kernel's owner keeps
     std::string file;
     std::string options;
@@ -51,8 +56,8 @@ struct Kernel::Built {
     Launched launched;
     std::size_t expected_items = 0;
     cl::Kernel kernel;
-    std::vector<std::string> parameters;  // empty until it is built
-    std::map<bool, bool> compiled;        // by whether the launch was a small one
+    std::vector<Parameter> parameters;  // empty until it is built
+    std::map<bool, bool> compiled;      // by whether the launch was a small one
 
     void build();
 };

@@ -13,6 +13,7 @@
 #include <string>
 #include <string_view>
 #include <type_traits>
+#include <typeinfo>
 #include <variant>
 #include <vector>
 
@@ -93,21 +94,29 @@ class Buffer : public DeviceMemory {
         return values;
     }
     [[nodiscard]] std::vector<T> download() const { return download(0, size()); }
+
+    /// The same bytes as an array of another type.
+    template <class U>
+    [[nodiscard]] Buffer<U> as() const {
+        return Buffer<U>(static_cast<const DeviceMemory&>(*this));
+    }
 };
 
-/// Kernel arguments by the names that the kernel gives them; a kernel takes those that it has.
+/// What OpenCL C calls a type of the host: "float", "uint", "float4", "Tiles", ...
+[[nodiscard]] std::string opencl_name(const std::type_info& type);
+
+/// Kernel arguments by the names that the kernel gives them, with their types; a kernel takes those
+/// that it has.
 class Arguments {
   public:
     template <class T>
     Arguments& set(std::string name, const Buffer<T>& buffer) {
-        values_[std::move(name)] = DeviceMemory(buffer);
-        return *this;
+        return put(std::move(name), buffer, name_of<T>());
     }
     template <class T>
     requires std::is_trivially_copyable_v<T> Arguments& set(std::string name, const T& value) {
         const auto* bytes = reinterpret_cast<const std::byte*>(&value);
-        values_[std::move(name)] = std::vector<std::byte>(bytes, bytes + sizeof(T));
-        return *this;
+        return put(std::move(name), std::vector(bytes, bytes + sizeof(T)), name_of<T>());
     }
     /// Takes over all of `other`.
     Arguments& set(const Arguments& other) {
@@ -117,7 +126,21 @@ class Arguments {
 
   private:
     friend class Kernel;
-    std::map<std::string, std::variant<DeviceMemory, std::vector<std::byte>>> values_;
+    using Content = std::variant<DeviceMemory, std::vector<std::byte>>;
+    struct Value {
+        Content content;
+        const std::string* type;  // in OpenCL C; of a buffer, of its elements
+    };
+
+    Arguments& put(std::string name, Content content, const std::string& type);
+
+    template <class T>
+    static const std::string& name_of() {
+        static const std::string name = opencl_name(typeid(T));
+        return name;
+    }
+
+    std::map<std::string, Value> values_;
 };
 
 /// Integers that a kernel is compiled with (-D).
@@ -137,7 +160,8 @@ class Kernel {
   public:
     /// Runs at least `items` work-items (a whole number of groups), in order with what was
     /// launched before, without waiting. Throws std::logic_error if the kernel has a parameter
-    /// that `arguments` does not name, RuntimeError if the device refuses.
+    /// that `arguments` does not name or give the type of (of buffers: vectors and the numbers that
+    /// they are of are alike), RuntimeError if the device refuses.
     void launch(std::size_t items, const Arguments& arguments);
 
     /// Tells Device::compile() how many work-items launches will have at most: PoCL compiles a

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: MIT
+#include <cxxabi.h>
+
+#include <regex>
 #include <stdexcept>
 
 #include "clock.hpp"
@@ -7,6 +10,58 @@
 #include "error.hpp"
 
 namespace manylight {
+namespace {
+
+// A kernel's parameter's text, without what some drivers add.
+std::string trimmed(std::string text) {
+    while (!text.empty() && text.back() == '\0') text.pop_back();
+    if (text.starts_with("struct ")) text.erase(0, 7);
+    return text;
+}
+
+// Of a type of elements the number's: of "float", "float4" and "float_n", "float".
+std::string_view number_of(std::string_view type) {
+    if (type.size() > 2 && type[type.size() - 2] == '_') type.remove_suffix(2);
+    return type.substr(0, type.find_last_not_of("0123456789") + 1);
+}
+
+// Whether a parameter, of a type as the driver names it, takes an argument of a type.
+bool takes(std::string_view parameter, std::string_view type, bool is_buffer) {
+    if (parameter.empty()) return true;  // not every driver tells
+    if (!is_buffer) return parameter == type;
+    const std::size_t end = parameter.find_last_not_of(" *");
+    return parameter.ends_with('*') && number_of(parameter.substr(0, end + 1)) == number_of(type);
+}
+
+}  // namespace
+
+std::string opencl_name(const std::type_info& type) {
+    int status = 0;
+    char* text = abi::__cxa_demangle(type.name(), nullptr, nullptr, &status);
+    std::string name = text != nullptr ? text : type.name();
+    std::free(text);
+    std::smatch vector;
+    static const std::regex glm_vector("glm::vec<([0-9]), (.*), .*>");
+    static const std::regex array("std::array<(.*), ([0-9])ul>");
+    std::string lanes;
+    const std::string whole = name;
+    if (std::regex_match(whole, vector, glm_vector)) {
+        lanes = vector[1];
+        name = vector[2];
+    } else if (std::regex_match(whole, vector, array)) {
+        lanes = vector[2];
+        name = vector[1];
+    }
+    if (name == "unsigned int") name = "uint";
+    if (name == "unsigned char") name = "uchar";
+    const std::size_t space = name.rfind("::");
+    return (space == std::string::npos ? name : name.substr(space + 2)) + lanes;
+}
+
+Arguments& Arguments::put(std::string name, Content content, const std::string& type) {
+    values_.insert_or_assign(std::move(name), Value{std::move(content), &type});
+    return *this;
+}
 
 std::string Device::Context::options(const Defines& defines) const {
     // -w: a warning of whatever compiler a driver brings concerns no user. -cl-kernel-arg-info:
@@ -41,9 +96,8 @@ void Kernel::Built::build() {
         kernel = cl::Kernel(context->build(file, options), name.c_str());
         const auto count = kernel.getInfo<CL_KERNEL_NUM_ARGS>();
         for (cl_uint i = 0; i < count; ++i) {
-            std::string parameter = kernel.getArgInfo<CL_KERNEL_ARG_NAME>(i);
-            while (!parameter.empty() && parameter.back() == '\0') parameter.pop_back();
-            parameters.push_back(std::move(parameter));
+            parameters.push_back({trimmed(kernel.getArgInfo<CL_KERNEL_ARG_NAME>(i)),
+                                  trimmed(kernel.getArgInfo<CL_KERNEL_ARG_TYPE_NAME>(i))});
         }
     } catch (const cl::Error& error) {
         throw RuntimeError("{}: {}: {}", context->info.name, name, describe(error));
@@ -89,17 +143,24 @@ void Kernel::launch(std::size_t items, const Arguments& arguments) {
     built_->build();
     try {
         for (cl_uint i = 0; i < built_->parameters.size(); ++i) {
-            const auto found = arguments.values_.find(built_->parameters[i]);
+            const Built::Parameter& parameter = built_->parameters[i];
+            const auto found = arguments.values_.find(parameter.name);
             if (found == arguments.values_.end())
                 throw std::logic_error(fmt::format("kernel {} needs an argument '{}'", built_->name,
-                                                   built_->parameters[i]));
-            if (const auto* memory = std::get_if<DeviceMemory>(&found->second)) {
+                                                   parameter.name));
+            const auto& [content, type] = found->second;
+            const auto* memory = std::get_if<DeviceMemory>(&content);
+            if (!takes(parameter.type, *type, memory != nullptr))
+                throw std::logic_error(fmt::format("kernel {}: argument '{}' is a {}, not {} {}",
+                                                   built_->name, parameter.name, parameter.type,
+                                                   memory != nullptr ? "a buffer of" : "a", *type));
+            if (memory != nullptr) {
                 if (!memory->allocation_)
                     throw std::logic_error(fmt::format("kernel {}: argument '{}' has no memory",
-                                                       built_->name, built_->parameters[i]));
+                                                       built_->name, parameter.name));
                 built_->kernel.setArg(i, memory->allocation_->buffer);
             } else {
-                const auto& bytes = std::get<std::vector<std::byte>>(found->second);
+                const auto& bytes = std::get<std::vector<std::byte>>(content);
                 built_->kernel.setArg(i, bytes.size(), bytes.data());
             }
         }

@@ -44,7 +44,7 @@ void ContributionStage::evaluate(const Buffer<Surface>& surfaces,
     arguments.set(shadows_.buffers())
         .set("surfaces", surfaces)
         .set("representatives", representatives)
-        .set("contributions", matrix.values)
+        .set("contributions", matrix.values.as<float>())
         .set("sums", matrix.chunk_sums)
         .set("chunks", chunks)
         .set("totals", matrix.totals);
