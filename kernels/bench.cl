@@ -8,7 +8,7 @@
 #if LANES > 1
 KERNEL void bench_closest_packets(BVH_PARAMETERS, __global const float4* origins,
                                   __global float* rays, __global const float* starts,
-                                  uint packet_count, __global int* triangles) {
+                                  uint packet_count, __global uint* triangles) {
     const uint i = get_global_id(0);
     if (i >= packet_count) return;
     Packet packet = load_packet(origins, rays, i);
@@ -18,7 +18,7 @@ KERNEL void bench_closest_packets(BVH_PARAMETERS, __global const float4* origins
     int_n found[PARTS];
     closest_hits(BVH_ARGUMENTS, &packet, from, found);
     for (uint part = 0u; part < PARTS; ++part)
-        *(__global int_n*)(triangles + 16u * i + LANES * part) = found[part];
+        *(__global uint_n*)(triangles + 16u * i + LANES * part) = as_uint_n(found[part]);
     store_ends(&packet, rays, i);
 }
 #endif
