@@ -39,7 +39,8 @@ struct Learned {
         (void)frame.render(quiet);
     }
     [[nodiscard]] TileKnowledge knowledge(glm::uvec2 pixel) const {
-        return frame.knowledge(pixel.y / tiles.size * tiles.columns + pixel.x / tiles.size);
+        return dynamic_cast<Adaptive&>(frame.sampler())
+            .knowledge(pixel.y / tiles.size * tiles.columns + pixel.x / tiles.size);
     }
     [[nodiscard]] PixelReport inspect(glm::uvec2 pixel) const {
         return inspect_pixel(scene.scene, frame.tree(), scene.camera, tiles, pixel,

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <bit>
 
+#include "samplers/contribution/contribution.hpp"
 #include "support.hpp"
 
 namespace manylight {
@@ -34,12 +35,13 @@ std::vector<uint> cdf_of(Device device, const std::vector<float>& row,
 
 TEST(pdf, agrees_with_the_reference) {
     FOR_EACH_DEVICE(device)
-    for (const std::string& scene : test::scene_names())
-        for (const Sampler& sampler : all_samplers()) {
-            if (sampler.table != Table::power && sampler.table != Table::clusters) continue;
-            SCOPED_TRACE(scene);
-            test::expect_pass(test::verifier(scene, device).pdf(sampler));
-        }
+    for (const std::string& scene : test::scene_names()) {
+        SCOPED_TRACE(scene);
+        Verifier& verifier = test::verifier(scene, device);
+        test::expect_pass(verifier.pdf("power", {.power = 1}, false));
+        test::expect_pass(verifier.pdf("contribution", paper_shares, true));
+        test::expect_pass(verifier.pdf("contribution-defensive", defensive_shares, true));
+    }
 }
 
 TEST(pdf, paper_weights_visible_lights_only) {

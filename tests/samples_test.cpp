@@ -7,6 +7,7 @@
 #include "reference/pdf.hpp"
 #include "reference/tiles.hpp"
 #include "support.hpp"
+#include "verify/sampler_checks.hpp"
 
 namespace manylight {
 namespace {
@@ -49,42 +50,34 @@ Drawn draw_often(Device device, const Sampler& sampler) {
     const auto lights = static_cast<uint>(s.scene.lights.size());
     const Tiles tiles = all_tiles(size, size, 16);
     const WideBvh bvh = build_wide_bvh(s.scene, 8, 8, 10);
-    const DeviceScene uploaded = upload_scene(device, s.scene, bvh, s.camera);
+    const LightTree tree = build_light_tree(s.scene.lights);
+    const DeviceScene uploaded =
+        upload_scene(device, s.scene, bvh, s.camera, sampler.tree ? &tree : nullptr);
     Drawn out;
     Buffer<Surface> surfaces = device.allocate<Surface>(item_count(tiles));
     GBufferStage(device, uploaded).trace(tiles, {}, surfaces);
     out.surfaces = surfaces.download();
 
-    ClusterOptions options;
-    options.tile_size = 16;
-    Clustering clustering(device, uploaded, options, tiles.count);
-    clustering.build(tiles, surfaces, [](std::size_t) {});
-    const Mixture mixture = mixture_of(sampler, s.scene.lights);
-    const std::vector<uint> rows = clustering.item_rows();
-    const std::vector<uint> words = clustering.matrix().values.download();
-    const std::vector<RowSum> totals = clustering.totals();
-    for (std::size_t item = 0; item < item_count(tiles); ++item) {
-        std::vector<float> row(lights, 0.f);
-        RowSum total{};
-        if (sampler.table == Table::clusters) {
-            for (uint y = 0; y < lights; ++y)
-                row[y] = std::bit_cast<float>(words[rows[item] * lights + y]);
-            total = totals[rows[item]];
-        }
-        std::vector<double> p(lights, 1.0 / lights);
-        if (sampler.table == Table::power || sampler.table == Table::clusters)
-            p = reference::probabilities(row, total, s.scene.lights, mixture);
-        out.expected.insert(out.expected.end(), p.begin(), p.end());
-    }
-    clustering.normalise(mixture);
-    Arguments tables = clustering.tables();
-    tables.set("power_cdf", PdfStage(device, uploaded).of_powers(mixture));
-    SampleStage stage(device, uploaded, sampler.kernel_file, item_count(tiles));
+    ClusterOptions clusters;
+    clusters.tile_size = 16;
+    const std::unique_ptr<LightSampler> drawing =
+        sampler.make({device, uploaded, s.scene.lights, tiles.count, 16, size, 1, clusters});
+    drawing->prepare();
+    drawing->begin(tiles, surfaces, 11, [](std::size_t) {});
+    const HostTables tables(*drawing);
+    const reference::LightProbability probability = checks_of(sampler).light_probability;
+    for (std::size_t item = 0; item < item_count(tiles); ++item)
+        for (uint y = 0; y < lights; ++y)
+            out.expected.push_back(
+                out.surfaces[item].position.w < 0
+                    ? 0
+                    : probability(tables.view(tree), {s.scene, s.camera, out.surfaces[item]}, item,
+                                  y));
     Estimates estimates{device.allocate<float4>(item_count(tiles)),
                         device.allocate<float4>(item_count(tiles))};
     for (uint i = 0; i < draws; ++i) {
-        stage.draw(tiles, {i, 11, false}, 1, surfaces, tables, estimates,
-                   [](std::size_t) { return true; });
+        drawing->draw(tiles, {i, 11, false}, 1, surfaces, estimates,
+                      [](const auto&, std::size_t) { return true; });
         out.values.push_back(estimates.sums.download());
     }
     return out;
@@ -128,7 +121,7 @@ TEST(samples, agree_with_the_reference) {
     FOR_EACH_DEVICE(device)
     for (const std::string& scene : test::scene_names())
         for (const Sampler& sampler : all_samplers()) {
-            if (!sampler.choose_light) continue;
+            if (checks_of(sampler).choose_light == nullptr) continue;
             SCOPED_TRACE(scene);
             test::expect_pass(test::verifier(scene, device).samples(sampler));
         }
@@ -138,8 +131,8 @@ TEST(samples, agree_with_the_reference) {
 TEST(samples, frequencies_follow_the_pdf) {
     FOR_EACH_DEVICE(device)
     for (const Sampler& sampler : all_samplers()) {
-        // Those whose probabilities the reference writes down; the others' are judged as estimates.
-        if (sampler.all_lights || sampler.uses_tree() || sampler.name == "ris") continue;
+        // Those with a closed form; the others' are judged as estimates.
+        if (checks_of(sampler).light_probability == nullptr) continue;
         SCOPED_TRACE(std::string(sampler.name));
         const Drawn drawn = draw_often(device, sampler);
         const std::size_t lights = open_scene().scene.lights.size();
@@ -180,7 +173,7 @@ TEST(samples, boundaries_of_a_small_cdf) {
         GBufferStage(device, uploaded).trace(tiles, {}, surfaces);
         Estimates estimates{device.allocate<float4>(item_count(tiles)),
                             device.allocate<float4>(item_count(tiles))};
-        SampleStage stage(device, uploaded, find_sampler("power").kernel_file, item_count(tiles));
+        SampleStage stage(device, uploaded, "samplers/power/power.cl", item_count(tiles));
         std::map<std::size_t, int> counts;
         for (uint i = 0; i < 40; ++i) {
             stage.draw(tiles, {i, 3, false}, 1, surfaces,

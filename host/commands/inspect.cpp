@@ -322,7 +322,8 @@ int run_inspect(const InspectArguments& arguments) {
     const bool lit = !loaded.scene.lights.empty();
     const PixelReport report =
         inspect_pixel(loaded.scene, frame.tree(), loaded.camera, tiles, pixel,
-                      lit ? frame.knowledge(tile) : TileKnowledge{{}, {}, {1, 0, 0}, 1, 1});
+                      lit ? dynamic_cast<Adaptive&>(frame.sampler()).knowledge(tile)
+                          : TileKnowledge{{}, {}, {1, 0, 0}, 1, 1});
     Inspected in = rank(loaded, frame.tree(), report);
     in.spp = options.spp;
     const float* rgb = result.image.at(pixel.x, pixel.y);

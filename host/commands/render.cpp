@@ -301,7 +301,7 @@ int run_render(const RenderArguments& arguments) {
         throw InputError("--aov {}: layers go to an .exr file; name one with --output",
                          options.aovs[0]);
     if (!arguments.cluster_map.empty()) {
-        if (arguments.sampler != "auto" && find_sampler(arguments.sampler).table != Table::clusters)
+        if (arguments.sampler != "auto" && !find_sampler(arguments.sampler).clusters)
             throw InputError("--cluster-map {}: sampler {} makes no clusters",
                              arguments.cluster_map, arguments.sampler);
         for (const char* name : {"cluster", "representative"}) options.aovs.emplace_back(name);

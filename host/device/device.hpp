@@ -124,6 +124,14 @@ class Arguments {
         return *this;
     }
 
+    /// What the buffer of that name holds; nothing where there is none.
+    template <class T>
+    [[nodiscard]] std::vector<T> download(const std::string& name) const {
+        const auto found = values_.find(name);
+        if (found == values_.end()) return {};
+        return Buffer<T>(std::get<DeviceMemory>(found->second.content)).download();
+    }
+
   private:
     friend class Kernel;
     using Content = std::variant<DeviceMemory, std::vector<std::byte>>;

@@ -10,7 +10,7 @@ void copy(const float4& v, float* out) {
     for (int c = 0; c < 3; ++c) out[c] = v[c];
 }
 
-const RowSum& total(const BatchFacts& f, std::size_t item) { return f.totals[f.rows[item]]; }
+const RowSum& total(const BatchFacts& f, std::size_t item) { return f.clusters.totals[f.clusters.rows[item]]; }
 
 void normal(const BatchFacts& f, std::size_t item, float* out) {
     if (hit(f, item)) copy(f.surfaces[item].normal, out);
@@ -31,11 +31,11 @@ void albedo(const BatchFacts& f, std::size_t item, float* out) {
 }
 
 void cluster(const BatchFacts& f, std::size_t item, float* out) {
-    *out = static_cast<float>(f.numbers[f.rows[item]]);
+    *out = static_cast<float>(f.numbers[f.clusters.rows[item]]);
 }
 
 void representative(const BatchFacts& f, std::size_t item, float* out) {
-    *out = f.representatives[f.rows[item]] == item ? 1.f : 0.f;
+    *out = f.clusters.representatives[f.clusters.rows[item]] == item ? 1.f : 0.f;
 }
 
 void visible_share(const BatchFacts& f, std::size_t item, float* out) {

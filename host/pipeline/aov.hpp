@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "output/image.hpp"
-#include "pipeline/clustering.hpp"
+#include "samplers/sampler.hpp"
 
 namespace manylight {
 
@@ -16,10 +16,8 @@ struct BatchFacts {
     glm::dvec3 origin;                // Scene::origin
     std::vector<Material> materials;  // by Surface::shading
     std::vector<Surface> surfaces;    // [item], at the pixels' centres
-    std::vector<uint> rows;           // [item] region; empty where nothing was clustered, as below
-    std::vector<uint> representatives;  // [region] item
-    std::vector<RowSum> totals;         // [region]
-    std::vector<std::size_t> numbers;   // [region] number of the leaf in the whole image
+    ClusterFacts clusters;            // empty where nothing was clustered, as below
+    std::vector<std::size_t> numbers;  // [region] number of the leaf in the whole image
 };
 
 /// A layer of extra values that a frame can give.

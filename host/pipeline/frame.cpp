@@ -8,12 +8,10 @@
 #include "clock.hpp"
 #include "device/kernel_sources.hpp"
 #include "output/hash.hpp"
-#include "pipeline/adaptive.hpp"
 #include "pipeline/aov.hpp"
 #include "pipeline/image_options.hpp"
 #include "stages/accumulate.hpp"
 #include "stages/reflections.hpp"
-#include "stages/samples.hpp"
 
 namespace manylight {
 namespace {
@@ -51,12 +49,9 @@ class Stopwatch {
 struct Frame::Stages {
     DeviceScene scene;
     GBufferStage gbuffer;
-    std::optional<SampleStage> samples;  // either of these two
-    std::optional<Adaptive> adaptive;
+    std::unique_ptr<LightSampler> sampler;
     std::optional<ReflectionStage> reflections;
     AccumulateStage accumulate;
-    std::optional<Clustering> clustering;
-    Arguments tables;               // what the sampler draws from
     Buffer<Surface> centres;        // of the pixels, where the plan says so
     std::size_t centres_first = 0;  // of their points (see GBufferStage)
     Buffer<Surface> surfaces;       // of the pixel samples
@@ -78,9 +73,7 @@ Frame::Frame(const Device& device, const Scene& scene, const WideBvh& bvh, const
       camera_(camera),
       options_(options),
       sampler_(find_sampler(options.sampler)),
-      plan_(make_plan(device.info(), scene, bvh, options)) {
-    options_.clusters.shadow.weighed = sampler_.weighs_shadow;
-}
+      plan_(make_plan(device.info(), scene, bvh, options)) {}
 
 // Light samples of pixel sample i.
 uint Frame::samples_of(uint i) const {
@@ -112,7 +105,7 @@ void Frame::prepare() {
     const std::size_t pixels = std::size_t{options_.width} * options_.height;
     const std::size_t items =
         std::size_t{plan_.tiles_per_batch} * options_.tile_size() * options_.tile_size();
-    const bool tree = sampler_.uses_tree();
+    const bool tree = sampler_.tree;
     if (tree) {
         Stopwatch watch(result_.prepare_seconds, device_);
         tree_ = build_light_tree(scene_.lights);
@@ -124,27 +117,19 @@ void Frame::prepare() {
     if (!options_.reflections) uploaded.shading["HAS_REFLECTIONS"] = 0;
     stages_ = std::make_shared<Stages>(device_, uploaded, pixels, options_.estimates_error());
     Stages& s = *stages_;
-    if (sampler_.table == Table::cuts)
-        s.adaptive.emplace(device_, s.scene, plan_.tiles_per_batch, options_.width,
-                           options_.most_samples());
-    else
-        s.samples.emplace(device_, s.scene, sampler_.kernel_file, items);
+    s.sampler = sampler_.make({device_, s.scene, scene_.lights, plan_.tiles_per_batch,
+                               options_.tile_size(), options_.width, options_.most_samples(),
+                               options_.clusters});
     if (uploaded.shading.at("HAS_REFLECTIONS") != 0) s.reflections.emplace(device_, s.scene);
     s.surfaces = device_.allocate<Surface>(items);
     if (plan_.centres) s.centres = two_surfaces ? device_.allocate<Surface>(items) : s.surfaces;
     s.centres_first = two_surfaces ? items : 0;
     s.estimates = {allocate_zeros(items), allocate_zeros(items)};
-    if (plan_.clusters) {
-        s.clustering.emplace(device_, s.scene, options_.clusters, plan_.tiles_per_batch);
-        s.tables = s.clustering->tables();
-    }
     device_.compile();
-    if (!plan_.clusters && sampler_.table == Table::power && !scene_.lights.empty()) {
-        Stopwatch watch(result_.prepare_seconds, device_);
-        const Mixture mixture = mixture_of(sampler_, scene_.lights);
-        s.tables.set("power_cdf", PdfStage(device_, s.scene).of_powers(mixture));
-        device_.finish();
-    }
+    if (scene_.lights.empty()) return;
+    Stopwatch watch(result_.prepare_seconds, device_);
+    s.sampler->prepare();
+    device_.finish();
 }
 
 FrameResult Frame::render(Progress& progress, const Saving& saving, const FrameState* state) {
@@ -234,7 +219,7 @@ void Frame::visit_all(uint end, double shown, double share, Progress& progress) 
             stages_->gbuffer.trace(visit.batch, {}, stages_->centres, stages_->centres_first);
             if (options_.jitters() && visit.state == nullptr)  // which has counted them
                 result_.primary_rays += pixel_count(visit.batch);
-            if (plan_.clusters) cluster(visit, progress);
+            if (plan_.clusters) begin(visit, stages_->centres, progress);
             if (!layers_kept_[i]) keep_aovs(visit.batch);
             layers_kept_[i] = true;
             device_.finish();
@@ -245,40 +230,37 @@ void Frame::visit_all(uint end, double shown, double share, Progress& progress) 
     }
 }
 
-// How many rays clusters take shows only as they are made: half of the worst is taken for all.
-double Frame::cluster_work(const Tiles& batch) const {
-    if (!plan_.clusters) return 0;
-    return 0.5 * batch.count * most_regions(options_.clusters) *
-           static_cast<double>(scene_.lights.size());
-}
-
 // `work`: rays of the visit done so far, clusters first.
 void Frame::report(Progress& progress, const Visit& visit, double work) const {
     double samples = 0;
     for (uint i = done_[visit.number]; i < visit.end && !visit.deadline; ++i)
         samples += std::max(samples_of(i), 1u);
     double done =
-        work / (cluster_work(visit.batch) + samples * static_cast<double>(item_count(visit.batch)));
+        work / (stages_->sampler->expected_begin_rays(visit.batch) + samples * static_cast<double>(item_count(visit.batch)));
     if (visit.deadline)
         done = seconds_since(visit.begun) /
                std::chrono::duration<double>(*visit.deadline - visit.begun).count();
     progress.set(visit.shown + visit.share * std::clamp(done, 0.0, 1.0));
 }
 
-void Frame::cluster(const Visit& visit, Progress& progress) {
-    Clustering& clustering = *stages_->clustering;
+// What the sampler makes of a batch before it draws.
+void Frame::begin(const Visit& visit, const Buffer<Surface>& surfaces, Progress& progress) {
+    LightSampler& sampler = *stages_->sampler;
     double done = 0;
-    clustering.build(visit.batch, stages_->centres, [&](std::size_t entries) {
+    const RayCount count = [&](std::size_t rays) {
         device_.finish();
-        done += static_cast<double>(entries);
-        report(progress, visit, std::min(done, cluster_work(visit.batch)));
-    });
-    clustering.normalise(mixture_of(sampler_, scene_.lights));
-    if (visit.state == nullptr)  // which has counted them
-        for (const RowSum& total : clustering.totals()) cluster_rays_ += total.facing_count;
+        done += static_cast<double>(rays);
+        report(progress, visit, std::min(done, stages_->sampler->expected_begin_rays(visit.batch)));
+    };
+    if (visit.state == nullptr) {
+        sampler.begin(visit.batch, surfaces, options_.seed, count);
+        begin_rays_ += sampler.begin_rays();
+    } else {  // which has counted them
+        sampler.resume(visit.batch, surfaces, options_.seed, *visit.state, count);
+    }
     if (layers_kept_[visit.number]) return;
     clusters_before_ = result_.clusters;
-    for (const uint split : clustering.split()) result_.clusters += split == 0;
+    result_.clusters += sampler.cluster_count();
 }
 
 void Frame::keep_aovs(const Tiles& batch) {
@@ -288,11 +270,9 @@ void Frame::keep_aovs(const Tiles& batch) {
     facts.materials = stages_->scene.materials.download();
     facts.surfaces = stages_->centres.download(0, item_count(batch));
     if (plan_.clusters) {
-        facts.rows = stages_->clustering->item_rows();
-        facts.representatives = stages_->clustering->representatives();
-        facts.totals = stages_->clustering->totals();
+        facts.clusters = stages_->sampler->cluster_facts();
         std::size_t number = clusters_before_;
-        for (const uint split : stages_->clustering->split()) {
+        for (const uint split : facts.clusters.split) {
             facts.numbers.push_back(number);
             number += split == 0;
         }
@@ -306,8 +286,9 @@ void Frame::keep_aovs(const Tiles& batch) {
 void Frame::sample(const Visit& visit, Progress& progress) {
     Stages& s = *stages_;
     const Tiles& batch = visit.batch;
-    double work = cluster_work(batch);
+    double work = s.sampler->expected_begin_rays(batch);
     double seconds_per_sample = 0;  // of a light sample of all pixels
+    bool by_passes = false;         // the sampler finishes some pixels after others
     const uint first = done_[visit.number];
     for (uint i = first; i < visit.end; ++i) {
         if (is_interrupted()) {
@@ -321,7 +302,7 @@ void Frame::sample(const Visit& visit, Progress& progress) {
         };
         // One sample is taken whatever the time.
         const bool may_stop = visit.deadline.has_value() && i > 0;
-        const double expected = s.adaptive ? 0 : seconds_per_sample * count;
+        const double expected = by_passes ? 0 : seconds_per_sample * count;
         if (may_stop && seconds_left() < expected / 2) {
             result_.is_cut_short = true;
             break;
@@ -335,35 +316,28 @@ void Frame::sample(const Visit& visit, Progress& progress) {
             s.accumulate.add(batch, pass, s.surfaces, s.estimates.sums,
                              {weight_of(i), i % ERROR_GROUPS}, s.image);
         };
-        const auto progress_by = [&](std::size_t samples) {
+        if (i == first && visit.fresh && !plan_.clusters && count > 0)
+            begin(visit, s.surfaces, progress);
+        by_passes = false;
+        const Sink sink = [&](const std::optional<Pass>& finished, std::size_t samples) {
+            if (finished && !s.reflections) add(finished);
+            by_passes = finished.has_value();
             device_.finish();
             work += static_cast<double>(samples);
             report(progress, visit, work);
-            return !is_interrupted() || saving_.save;  // a state is one between pixel samples
+            if (is_interrupted() && !saving_.save) return false;  // a state is one between samples
+            return !by_passes || !may_stop || seconds_left() > 0;
         };
         done_[visit.number] = i + 1;
-        bool complete = true;
-        if (s.adaptive && count > 0) {
-            if (i == first && visit.state != nullptr)
-                s.adaptive->resume(batch, *visit.state);
-            else if (i == first && visit.fresh)
-                s.adaptive->start(batch, s.surfaces, options_.seed);
-            s.adaptive->draw(batch, sample, count, s.surfaces, s.estimates, [&](const Pass& pass) {
-                if (!s.reflections) add(pass);
-                complete = progress_by(pass_pixels(pass) * count);
-                return complete = complete && (!may_stop || seconds_left() > 0);
-            });
-        } else if (s.samples) {
-            complete = s.samples->draw(batch, sample, count, s.surfaces, s.tables, s.estimates,
-                                       progress_by);
-        }
+        const bool complete = count == 0 || s.sampler->draw(batch, sample, count, s.surfaces,
+                                                            s.estimates, sink);
         if (!complete) {
             result_.is_cut_short = true;
             continue;
         }
         if (s.reflections)
             s.reflections->add(batch, position_of(sample), s.surfaces, s.estimates.sums);
-        if (s.reflections || !s.adaptive || count == 0) add({});
+        if (s.reflections || !by_passes) add({});
         device_.finish();
         seconds_per_sample = seconds_since(begun) / std::max(count, 1u);
         const bool is_last = i + 1 == options_.spp && visit.number + 1 == plan_.batches;
@@ -395,13 +369,13 @@ void Frame::save(unsigned batch, uint end) {
     state.put("end", end);
     state.put("spp", options_.planned_spp());
     state.put("done", std::span<const uint>(done_));
-    state.put("cluster_rays", std::uint64_t{cluster_rays_});
+    state.put("begin_rays", std::uint64_t{begin_rays_});
     state.put("primary_rays", std::uint64_t{result_.primary_rays});
     state.put("sums", s.image.sums);
     state.put("residuals", s.image.residuals);
     state.put("weights", s.image.weights);
     if (options_.estimates_error()) state.put("groups", s.image.groups);
-    if (s.adaptive && !scene_.lights.empty()) s.adaptive->save(state);
+    if (!scene_.lights.empty()) s.sampler->save(state);
     saving_.save(state);
     saved_ = Clock::now();
 }
@@ -420,7 +394,7 @@ void Frame::resume(const FrameState& state) {
     state_ = &state;
     resumed_end_ = state.get<uint>("end");
     done_ = state.get<uint>("done", plan_.batches);
-    cluster_rays_ = state.get<std::uint64_t>("cluster_rays");
+    begin_rays_ = state.get<std::uint64_t>("begin_rays");
     result_.primary_rays = state.get<std::uint64_t>("primary_rays");
     result_.is_resumed = true;
     state.restore("sums", s.image.sums);
@@ -444,7 +418,7 @@ void Frame::keep_estimate() {
     }
 }
 
-TileKnowledge Frame::knowledge(uint tile) const { return stages_->adaptive->knowledge(tile); }
+LightSampler& Frame::sampler() const { return *stages_->sampler; }
 
 void Frame::keep_image() {
     result_.image = Image(options_.width, options_.height, {"R", "G", "B"});
@@ -462,7 +436,7 @@ void Frame::keep_image() {
         samples += std::min(weights[i], first_weight) +
                    std::max(weights[i] - first_weight, 0.f) / later_weight;
     }
-    result_.shadow_rays = cluster_rays_ + static_cast<std::size_t>(rays);
+    result_.shadow_rays = begin_rays_ + static_cast<std::size_t>(rays);
     result_.spp = samples / static_cast<double>(sums.size());
     result_.light_samples = samples_of(0);
     result_.later_light_samples = samples_of(std::max(std::ranges::max(done_), 1u) - 1);

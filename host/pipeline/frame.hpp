@@ -9,8 +9,8 @@
 #include "output/error_estimate.hpp"
 #include "output/image.hpp"
 #include "output/progress.hpp"
-#include "pipeline/adaptive.hpp"
 #include "pipeline/plan.hpp"
+#include "samplers/table.hpp"
 #include "scene/scene.hpp"
 #include "stages/gbuffer.hpp"
 
@@ -58,9 +58,8 @@ class Frame {
     /// The lights' tree, where the sampler uses one; after prepare().
     [[nodiscard]] const LightTree& tree() const { return tree_; }
 
-    /// What sampler adaptive has learned of a tile of the last batch, after render(); the scene has
-    /// lights.
-    [[nodiscard]] TileKnowledge knowledge(uint tile) const;
+    /// With what it has learned of the last batch, after render().
+    [[nodiscard]] LightSampler& sampler() const;
 
   private:
     struct Stages;
@@ -83,7 +82,7 @@ class Frame {
     [[nodiscard]] float weight_of(uint i) const;
     void render_to_error(Progress& progress);
     void visit_all(uint end, double shown, double share, Progress& progress);
-    void cluster(const Visit& visit, Progress& progress);
+    void begin(const Visit& visit, const Buffer<Surface>& surfaces, Progress& progress);
     void keep_aovs(const Tiles& batch);
     void sample(const Visit& visit, Progress& progress);
     [[nodiscard]] bool is_interrupted() const;
@@ -91,7 +90,6 @@ class Frame {
     void resume(const FrameState& state);
     void keep_estimate();
     void keep_image();
-    [[nodiscard]] double cluster_work(const Tiles& batch) const;
     void report(Progress& progress, const Visit& visit, double work) const;
 
     Device device_;
@@ -109,7 +107,7 @@ class Frame {
     const FrameState* state_ = nullptr;  // until the render has gone on with it
     uint resumed_end_ = 0;               // pixel samples that it was on the way to
     std::size_t clusters_before_ = 0;    // the batch in work
-    std::size_t cluster_rays_ = 0;
+    std::size_t begin_rays_ = 0;      
     std::shared_ptr<Stages> stages_;
     FrameResult result_;
 };

@@ -2,7 +2,7 @@
 // Why a pixel is noisy: what sampler adaptive knows there, beside what is true.
 #pragma once
 
-#include "pipeline/adaptive.hpp"
+#include "samplers/adaptive/adaptive.hpp"
 #include "reference/tracing.hpp"
 
 namespace manylight {

@@ -4,16 +4,14 @@
 #include <algorithm>
 
 #include "error.hpp"
-#include "pipeline/adaptive.hpp"
 #include "pipeline/aov.hpp"
+#include "samplers/table.hpp"
 #include "stages/accumulate.hpp"
-#include "stages/samples.hpp"
 
 namespace manylight {
 namespace {
 
 constexpr std::size_t items_per_batch = std::size_t{1} << 16;  // whose rays the caches hold
-constexpr std::size_t most_cut_lights = std::size_t{1} << 22;  // draws have 23 bits for a node
 constexpr std::size_t default_budget = std::size_t{2} << 30;
 
 template <class Vector>
@@ -72,7 +70,8 @@ bool RenderOptions::estimates_error() const {
 }
 
 unsigned RenderOptions::tile_size() const {
-    return find_sampler(sampler).table == Table::cuts ? ADAPTIVE_TILE : clusters.tile_size;
+    const unsigned own = find_sampler(sampler).tile_size;
+    return own > 0 ? own : clusters.tile_size;
 }
 
 std::size_t Plan::total_bytes() const {
@@ -87,13 +86,13 @@ Plan make_plan(const DeviceInfo& device, const Scene& scene, const WideBvh& bvh,
     const Tiles tiles = all_tiles(options.width, options.height, size);
     const auto lights = static_cast<uint>(scene.lights.size());
     Plan plan;
-    if (sampler.table == Table::cuts && scene.lights.size() > most_cut_lights)
+    if (scene.lights.size() > sampler.most_lights)
         throw InputError("{}: it has {} lights, and sampler {} takes {} at most", scene.file,
-                         scene.lights.size(), options.sampler, most_cut_lights);
+                         scene.lights.size(), options.sampler, sampler.most_lights);
     if (options.estimates_error() && options.spp < 2)
         throw InputError("--spp {}: the error is estimated from two or more pixel samples",
                          options.spp);
-    plan.clusters = sampler.table == Table::clusters && lights > 0;
+    plan.clusters = sampler.clusters && lights > 0;
     plan.centres = plan.clusters || std::ranges::any_of(options.aovs, [](const std::string& name) {
                        return name != "error";
                    });
@@ -103,7 +102,7 @@ Plan make_plan(const DeviceInfo& device, const Scene& scene, const WideBvh& bvh,
                        bytes_of(scene.triangle_materials) + bytes_of(scene.materials) +
                        bytes_of(scene.lights) + bytes_of(scene.cell_areas) +
                        bytes_of(scene.instances) + texture_bytes(scene);
-    const std::size_t light_tree = sampler.uses_tree() ? 2 * sizeof(LightNode) * lights : 0;
+    const std::size_t light_tree = sampler.tree ? 2 * sizeof(LightNode) * lights : 0;
     plan.scene_bytes += light_tree;
     plan.image_bytes = std::size_t{options.width} * options.height *
                        ImageSum::pixel_bytes(options.estimates_error());
@@ -112,50 +111,41 @@ Plan make_plan(const DeviceInfo& device, const Scene& scene, const WideBvh& bvh,
                       (options.estimates_error() ? ERROR_GROUPS : 1));
 
     const bool two_surfaces = plan.centres && options.jitters();
-    const bool cuts = sampler.table == Table::cuts;
     const std::size_t surface_bytes =
         sizeof(Surface) + (scene.varies_materials() ? sizeof(Material) : 0);
-    std::size_t tile_bytes =
-        tile_items * (surface_bytes * (two_surfaces ? 2 : 1) + 2 * sizeof(float4));
-    tile_bytes += cuts ? Adaptive::tile_bytes(lights) : tile_items * SampleStage::item_bytes();
-    std::size_t tile_matrix = 0;
-    std::size_t ray_bytes =
-        cuts ? Adaptive::fixed_bytes(lights, tiles.count, options.most_samples()) : 0;
-    if (plan.clusters) {
-        tile_bytes += Clustering::tile_bytes(options.clusters, lights);
-        ray_bytes = ContributionStage::ray_bytes(lights);
-        tile_matrix = most_regions(options.clusters) * Matrix::row_bytes(lights);
-    } else if (sampler.table == Table::power && lights > 0) {
-        plan.matrix_bytes = Matrix::row_bytes(lights);
-    }
+    const Footprint need =
+        sampler.footprint({lights, tiles.count, size, options.most_samples(), options.clusters});
+    const std::size_t tile_bytes =
+        need.tile + tile_items * (surface_bytes * (two_surfaces ? 2 : 1) + 2 * sizeof(float4));
+    plan.matrix_bytes = need.image;
     const std::size_t budget =
         options.memory > 0 ? options.memory : std::min(device.global_memory / 2, default_budget);
-    const std::size_t fixed = plan.total_bytes() + ray_bytes;
+    const std::size_t fixed = plan.total_bytes() + need.fixed;
     if (fixed + tile_bytes > budget)
         throw InputError(
             "--memory: {}{} is too little: the scene needs {}, the image {}, rays in work {}, and "
             "one tile {}{}",
             mebibytes(budget), options.memory > 0 ? "" : " (the default)",
-            mebibytes(plan.scene_bytes), mebibytes(plan.image_bytes), mebibytes(ray_bytes),
+            mebibytes(plan.scene_bytes), mebibytes(plan.image_bytes), mebibytes(need.fixed),
             mebibytes(tile_bytes),
             plan.clusters ? " (a smaller --max-depth or --tile-size needs less)" : "");
-    if (tile_matrix > device.max_allocation)
+    if (need.tile_matrix > device.max_allocation)
         throw InputError(
             "{}: one tile's contribution matrix needs {}, and {} allows {} at most in a buffer (a "
             "smaller --max-depth or --tile-size needs less)",
-            scene.file, mebibytes(tile_matrix), device.name, mebibytes(device.max_allocation));
-    // What sampler adaptive learns holds for a batch: as large as may be.
-    std::size_t most =
-        cuts ? tiles.count : std::clamp<std::size_t>(items_per_batch / tile_items, 1, tiles.count);
+            scene.file, mebibytes(need.tile_matrix), device.name, mebibytes(device.max_allocation));
+    // What a sampler learns holds for a batch: as large as may be.
+    std::size_t most = sampler.learns
+                           ? tiles.count
+                           : std::clamp<std::size_t>(items_per_batch / tile_items, 1, tiles.count);
     most = std::min(most, (budget - fixed) / tile_bytes);
-    if (tile_matrix > 0) most = std::min(most, device.max_allocation / tile_matrix);
-    const std::size_t largest_buffer =
-        std::max(tile_items * surface_bytes, cuts ? Adaptive::tile_bytes(lights) : std::size_t{0});
+    if (need.tile_matrix > 0) most = std::min(most, device.max_allocation / need.tile_matrix);
+    const std::size_t largest_buffer = std::max(tile_items * surface_bytes, need.tile_buffer);
     most = std::clamp<std::size_t>(device.max_allocation / largest_buffer, 1, most);
     plan.tiles_per_batch = static_cast<unsigned>(most);
     plan.batches = static_cast<unsigned>((tiles.count + most - 1) / most);
-    plan.matrix_bytes += most * tile_matrix;
-    plan.batch_bytes = ray_bytes + most * tile_bytes;
+    plan.matrix_bytes += most * need.tile_matrix;
+    plan.batch_bytes = need.fixed + most * tile_bytes;
     return plan;
 }
 

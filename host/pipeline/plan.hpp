@@ -7,7 +7,7 @@
 
 #include "bvh/wide.hpp"
 #include "clock.hpp"
-#include "pipeline/clustering.hpp"
+#include "samplers/contribution/options.hpp"
 
 namespace manylight {
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "reference/samples.hpp"
 
+#include <algorithm>
+
 #include "reference/light_tree.hpp"
 #include "reference/random.hpp"
 
@@ -33,6 +35,12 @@ Choice draw_from(std::span<const uint> cdf, const Draw& draw) {
     const uint target = stratified(total, draw.sample, draw.sample_count, draw.bits[0]);
     const Found found = search(cdf, target);
     return {found.light, static_cast<double>(total) / found.width / draw.sample_count};
+}
+
+// The probability of a light by a CDF of integers.
+double share_of(std::span<const uint> cdf, uint light) {
+    const double width = cdf[light] - (light > 0 ? cdf[light - 1] : 0u);
+    return cdf.back() > 0 ? width / cdf.back() : 0;
 }
 
 constexpr double doubtful = 1e-5;  // difference in a decision that single precision may not see
@@ -123,6 +131,41 @@ Choice choose_lighttree(const Tables& tables, const Point& point, const Draw& dr
     choice.light = tables.tree->order[nodes[at].first];
     choice.weight = 1 / (probability * draw.sample_count);
     return choice;
+}
+
+double probability_uniform(const Tables&, const Point& point, std::size_t, uint) {
+    return 1.0 / static_cast<double>(point.scene.lights.size());
+}
+
+double probability_power(const Tables& tables, const Point&, std::size_t, uint light) {
+    return share_of(tables.power_cdf, light);
+}
+
+double probability_contribution(const Tables& tables, const Point& point, std::size_t item,
+                                uint light) {
+    const std::size_t count = point.scene.lights.size();
+    return share_of(tables.cdf.subspan(tables.item_rows[item] * count, count), light);
+}
+
+// The product of the choices on the way down to the light's leaf.
+double probability_lighttree(const Tables& tables, const Point& point, std::size_t, uint light) {
+    const LightTree& tree = *tables.tree;
+    const auto place = static_cast<uint>(
+        std::ranges::find(tree.order, light) - tree.order.begin());
+    double probability = 1;
+    std::size_t at = 0;
+    for (bool root = tree.roots.size() > 1; root || tree.nodes[at].count > 1; root = false) {
+        const std::size_t left = root ? 0 : at + 1;
+        const std::size_t right = root ? tree.roots[1] : at + 2 * tree.nodes[at + 1].count;
+        const double a = importance(tree.nodes[left], point.surface);
+        const double b = importance(tree.nodes[right], point.surface);
+        if (a + b == 0) return 0;
+        const bool is_right = place >= tree.nodes[right].first &&
+                              place < tree.nodes[right].first + tree.nodes[right].count;
+        probability *= (is_right ? b : a) / (a + b);
+        at = is_right ? right : left;
+    }
+    return probability;
 }
 
 Estimate estimate(const Scene& scene, const Tracer& tracer, const Camera& camera,

@@ -52,6 +52,15 @@ using ChooseLight = Choice (*)(const Tables& tables, const Point& point, const D
 [[nodiscard]] Choice choose_ris(const Tables&, const Point&, const Draw&);
 [[nodiscard]] Choice choose_lighttree(const Tables&, const Point&, const Draw&);
 
+/// The probability that one draw at a point of a batch's item is of a light of the scene.
+using LightProbability = double (*)(const Tables& tables, const Point& point, std::size_t item,
+                                    uint light);
+
+[[nodiscard]] double probability_uniform(const Tables&, const Point&, std::size_t, uint);
+[[nodiscard]] double probability_power(const Tables&, const Point&, std::size_t, uint);
+[[nodiscard]] double probability_contribution(const Tables&, const Point&, std::size_t, uint);
+[[nodiscard]] double probability_lighttree(const Tables&, const Point&, std::size_t, uint);
+
 /// One pixel sample's estimate and what rounding may do to it.
 struct Estimate {
     glm::dvec3 value{0};      // cd/m2

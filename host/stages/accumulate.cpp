@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "stages/accumulate.hpp"
 
-#include "stages/adaptive.hpp"
+#include "samplers/adaptive/adaptive_samples.hpp"
 
 namespace manylight {
 namespace {

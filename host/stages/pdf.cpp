@@ -3,6 +3,12 @@
 
 namespace manylight {
 
+Mixture mixture_of(const Shares& shares, const std::vector<Light>& lights) {
+    double power = 0;
+    for (const Light& light : lights) power += light.emission.w;
+    return {shares.visible, shares.unshadowed, shares.power, static_cast<float>(power)};
+}
+
 PdfStage::PdfStage(Device& device, const DeviceScene& scene)
     : device_(device),
       light_count_(scene.light_count),

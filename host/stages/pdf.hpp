@@ -5,6 +5,16 @@
 
 namespace manylight {
 
+/// How a row of weights is mixed; see Mixture in shared/contribution.h.
+struct Shares {
+    float visible = 0;
+    float unshadowed = 0;
+    float power = 0;
+};
+
+/// The same for a scene's lights.
+[[nodiscard]] Mixture mixture_of(const Shares& shares, const std::vector<Light>& lights);
+
 /// Stage pdf: rows of the contribution matrix to CDFs (paper 4.2, eq. (6)); see
 /// shared/contribution.h.
 class PdfStage {

@@ -3,6 +3,7 @@
 
 #include <functional>
 
+#include "shared/adaptive.h"
 #include "shared/surface.h"
 #include "stages/device_scene.hpp"
 #include "stages/gbuffer.hpp"
@@ -16,6 +17,11 @@ struct Estimates {
     Buffer<float4> sums;
     Buffer<float4> residuals;  // of the sums, see kernels/lib/sum.h
 };
+
+/// Pixels of a pass over `tiles` tiles.
+[[nodiscard]] inline std::size_t pass_pixels(const Pass& pass) {
+    return std::size_t{pass.tile_count} * CELLS_PER_TILE * pass.count;
+}
 
 /// Stage samples: N light samples for each pixel sample (paper (2)), or all lights (paper (1)).
 class SampleStage {

@@ -5,7 +5,7 @@
 #include <cstring>
 
 #include "scene/alpha.hpp"
-#include "shared/adaptive.h"
+#include "verify/sampler_checks.hpp"
 
 namespace manylight {
 
@@ -100,15 +100,9 @@ std::vector<Check> Verifier::all() {
     std::vector<Check> checks = {layout(),        random(),     gbuffer(false),
                                  gbuffer(true),   clusters(),   representatives(),
                                  contributions(), refinement(), accumulate()};
-    for (const Sampler& sampler : all_samplers()) {
-        if (sampler.table == Table::power || sampler.table == Table::clusters)
-            checks.push_back(pdf(sampler));
-        if (sampler.choose_light) checks.push_back(samples(sampler));
-    }
-    // Half as many nodes as lights, so that some are groups.
-    const std::size_t half = (scene_.lights.size() + 1) / 2;
-    const auto cut_size = static_cast<uint>(std::clamp<std::size_t>(half, 2, CUT_CAPACITY));
-    for (Check& check : adaptive(cut_size)) checks.push_back(std::move(check));
+    for (const Sampler& sampler : all_samplers())
+        for (Check& check : checks_of(sampler).run(*this, sampler))
+            checks.push_back(std::move(check));
     checks.push_back(reflections());
     return checks;
 }

@@ -8,7 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "pipeline/clustering.hpp"
+#include "samplers/contribution/clustering.hpp"
+#include "samplers/table.hpp"
 #include "reference/samples.hpp"
 #include "stages/gbuffer.hpp"
 
@@ -67,13 +68,17 @@ class Verifier {
     [[nodiscard]] Check representatives();
     [[nodiscard]] Check contributions();
     [[nodiscard]] Check refinement();
-    [[nodiscard]] Check pdf(const Sampler& sampler);
+    /// CDFs of rows that are mixed by `shares`: of the contribution matrix where `clustered`, else
+    /// one row by power.
+    [[nodiscard]] Check pdf(std::string_view sampler, const Shares& shares, bool clustered);
     [[nodiscard]] Check samples(const Sampler& sampler);
     [[nodiscard]] Check reflections();
     [[nodiscard]] Check accumulate();
 
     /// Sampler adaptive with cuts of `cut_size` nodes at most: cuts, visibility, weights, samples.
     [[nodiscard]] std::vector<Check> adaptive(uint cut_size);
+
+    [[nodiscard]] const std::vector<Light>& lights() const { return scene_.lights; }
 
     /// All of them, for every sampler in the table.
     [[nodiscard]] std::vector<Check> all();

@@ -7,7 +7,7 @@
 #include "reference/contributions.hpp"
 #include "reference/random.hpp"
 #include "reference/tiles.hpp"
-#include "stages/adaptive.hpp"
+#include "samplers/adaptive/adaptive_samples.hpp"
 #include "verify/tolerances.hpp"
 #include "verify/verify.hpp"
 

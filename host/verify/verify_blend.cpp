@@ -37,7 +37,7 @@ std::vector<Check> check_blend(Device device, uint seed) {
         const unsigned lanes = device.form().bvh_width;
         const WideBvh bvh = build_wide_bvh(made.scene, lanes, lanes, reach_of(made.scene, camera));
         const DeviceScene scene = upload_scene(device, made.scene, bvh, camera);
-        SampleStage draw(device, scene, "samplers/exhaustive.cl", item_count(tiles));
+        SampleStage draw(device, scene, "samplers/exhaustive/exhaustive.cl", item_count(tiles));
         double shades = 0;
         double floors = 0;
         double lit = 0;

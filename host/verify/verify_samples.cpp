@@ -5,7 +5,8 @@
 
 #include "reference/pdf.hpp"
 #include "reference/tiles.hpp"
-#include "stages/samples.hpp"
+#include "stages/pdf.hpp"
+#include "verify/sampler_checks.hpp"
 #include "verify/tolerances.hpp"
 #include "verify/verify.hpp"
 
@@ -16,33 +17,33 @@ constexpr std::size_t most_samples = std::size_t{1} << 23;
 
 }  // namespace
 
-Check Verifier::pdf(const Sampler& sampler) {
-    Check check{.stage = fmt::format("pdf ({})", sampler.name),
+Check Verifier::pdf(std::string_view sampler, const Shares& shares, bool clustered) {
+    Check check{.stage = fmt::format("pdf ({})", sampler),
                 .tolerance = "16 eps of the probability (10 operations) + 2^-31 (the CDF's unit)"};
     if (scene_.lights.empty()) return check;
     const std::size_t lights = scene_.lights.size();
-    const bool clusters = sampler.table == Table::clusters;
     const std::size_t most_rows = std::max<std::size_t>(options_.most_entries * 4 / lights, 1);
     const auto rows =
-        static_cast<uint>(clusters ? std::min(clustering_.regions().size(), most_rows) : 1);
+        static_cast<uint>(clustered ? std::min(clustering_.regions().size(), most_rows) : 1);
     Matrix matrix(device_, rows, static_cast<uint>(lights));
     const std::vector<float> values =
-        clusters ? std::vector<float>(matrix_.begin(),
+        clustered ? std::vector<float>(matrix_.begin(),
                                       matrix_.begin() + static_cast<std::ptrdiff_t>(rows * lights))
                  : std::vector<float>(lights, 0.0f);
     std::vector<uint> words(values.size());
     std::memcpy(words.data(), values.data(), values.size() * sizeof(float));
     matrix.values.upload(words);
     std::vector<RowSum> totals(rows);
-    if (clusters) totals = clustering_.totals();
+    if (clustered) totals = clustering_.totals();
     totals.resize(rows);
     matrix.totals.upload(totals);
-    PdfStage(device_, device_scene_).normalise(rows, mixture_of(sampler, scene_.lights), matrix);
+    const Mixture mixture = mixture_of(shares, scene_.lights);
+    PdfStage(device_, device_scene_).normalise(rows, mixture, matrix);
     const std::vector<uint> cdf = matrix.values.download();
     for (uint row = 0; row < rows; ++row) {
         const auto entries = std::span(values).subspan(row * lights, lights);
-        const std::vector<double> expected = reference::probabilities(
-            entries, totals[row], scene_.lights, mixture_of(sampler, scene_.lights));
+        const std::vector<double> expected =
+            reference::probabilities(entries, totals[row], scene_.lights, mixture);
         uint before = 0;
         for (std::size_t y = 0; y < lights; ++y) {
             const uint width = cdf[row * lights + y] - before;
@@ -89,31 +90,20 @@ Check Verifier::samples(const Sampler& sampler) {
     const auto lights = static_cast<uint>(scene_.lights.size());
     const uint count = sampler.all_lights ? lights : 20;  // several launches
     const Tiles tiles = tiles_to_sample(count);
-    Arguments tables;
-    std::vector<uint> cdf;
-    std::vector<uint> power_cdf;
-    std::vector<uint> item_rows;
-    if (sampler.table == Table::clusters) {
-        clustering_.build(tiles_, surfaces_, [](std::size_t) {});
-        clustering_.normalise(mixture_of(sampler, scene_.lights));
-        tables = clustering_.tables();
-        cdf = clustering_.matrix().values.download(0, clustering_.regions().size() * lights);
-        item_rows = clustering_.item_rows();
-    } else if (sampler.table == Table::power) {
-        const Buffer<uint> row =
-            PdfStage(device_, device_scene_).of_powers(mixture_of(sampler, scene_.lights));
-        tables.set("power_cdf", row);
-        power_cdf = row.download();
-    }
-    const reference::Tables reference_tables{power_cdf, cdf, item_rows, &tree_};
+    const DeviceScene& uploaded = sampler.tree ? tree_scene_ : device_scene_;
+    const std::unique_ptr<LightSampler> drawing =
+        sampler.make({device_, uploaded, scene_.lights, std::max(tiles.count, tiles_.count),
+                      std::max(tiles.size, tiles_.size), options_.width, count, options_.clusters});
+    drawing->prepare();
+    if (!sampler.all_lights) drawing->begin(tiles_, surfaces_, options_.seed, [](std::size_t) {});
+    const HostTables tables(*drawing);
     const PixelSample sample{2, options_.seed, false};
     Buffer<Surface> surfaces = trace(tiles, {});
     const std::vector<Surface> points = surfaces.download();
     Estimates estimates{device_.allocate<float4>(item_count(tiles)),
                         device_.allocate<float4>(item_count(tiles))};
-    const DeviceScene& uploaded = sampler.table == Table::tree ? tree_scene_ : device_scene_;
-    SampleStage(device_, uploaded, sampler.kernel_file, item_count(tiles))
-        .draw(tiles, sample, count, surfaces, tables, estimates, [](std::size_t) { return true; });
+    drawing->draw(tiles, sample, count, surfaces, estimates,
+                  [](const auto&, std::size_t) { return true; });
     const std::vector<float4> found = estimates.sums.download();
     const std::size_t pixels = std::max<std::size_t>(options_.most_entries / count, 4);
     const std::size_t stride = pixel_count(tiles) / pixels | 1;
@@ -122,9 +112,9 @@ Check Verifier::samples(const Sampler& sampler) {
         std::size_t item;
     };
     const auto judge_pixel = [&](uint x, uint y, std::size_t item, bool closely) {
-        return reference::estimate(scene_, tracer_, camera_, points[item], reference_tables,
-                                   sampler.choose_light, item, y * tiles.width + x, sample.index,
-                                   sample.seed, count, closely);
+        return reference::estimate(scene_, tracer_, camera_, points[item], tables.view(tree_),
+                                   checks_of(sampler).choose_light, item, y * tiles.width + x,
+                                   sample.index, sample.seed, count, closely);
     };
     std::vector<Pixel> agreeing;
     std::size_t next = 0;

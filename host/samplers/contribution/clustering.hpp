@@ -3,7 +3,7 @@
 
 #include <functional>
 
-#include "samplers/table.hpp"
+#include "samplers/contribution/options.hpp"
 #include "stages/clusters.hpp"
 #include "stages/contributions.hpp"
 #include "stages/pdf.hpp"
@@ -11,14 +11,6 @@
 #include "stages/representatives.hpp"
 
 namespace manylight {
-
-/// The paper's parameters; it does not give their values.
-struct ClusterOptions {
-    unsigned tile_size = 32;      // pixels, a power of two from 8 to 128; paper 4.1
-    unsigned max_depth = 3;       // of the quadtree
-    float normal_threshold = 10;  // degrees between two corners' normals
-    ShadowRule shadow;
-};
 
 /// The most regions that a tile's quadtree can come to.
 [[nodiscard]] unsigned most_regions(const ClusterOptions& options);
@@ -37,7 +29,7 @@ class Clustering {
     /// Turns the matrix to CDFs.
     void normalise(const Mixture& mixture);
 
-    /// The buffers that samplers of Table::clusters draw from: cdf, item_rows.
+    /// The buffers that samplers draw from: cdf, item_rows.
     [[nodiscard]] Arguments tables() const;
 
     /// Bytes per tile on the device.

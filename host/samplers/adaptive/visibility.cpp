@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "stages/visibility.hpp"
+#include "samplers/adaptive/visibility.hpp"
 
 namespace manylight {
 
@@ -22,7 +22,7 @@ VisibilityStage::VisibilityStage(Device& device, const DeviceScene& scene)
     Defines defines = scene.traversal;
     defines["LANES"] = static_cast<int>(lanes_);
     const auto kernel = [&](const char* name) {
-        return device.kernel("visibility.cl", name, defines, "visibility");
+        return device.kernel("samplers/adaptive/visibility.cl", name, defines, "visibility");
     };
     learn_ = kernel("visibility_learn");
     sum_ = kernel("visibility_sum");

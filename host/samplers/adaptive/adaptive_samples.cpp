@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "stages/adaptive.hpp"
+#include "samplers/adaptive/adaptive_samples.hpp"
 
 #include <bit>
 
@@ -19,9 +19,9 @@ AdaptiveStage::AdaptiveStage(Device& device, const DeviceScene& scene, std::size
       expectations_(device.allocate<Expectation>(pixels)) {
     Defines defines = scene.shading;
     defines["LANES"] = static_cast<int>(lanes_);
-    draw_ = device.kernel("samplers/adaptive.cl", "adaptive_draw", defines, "weights");
-    aim_ = device.kernel("samplers/adaptive_samples.cl", "adaptive_aim", defines, "samples");
-    add_ = device.kernel("samplers/adaptive_samples.cl", "adaptive_add", defines, "samples");
+    draw_ = device.kernel("samplers/adaptive/adaptive.cl", "adaptive_draw", defines, "weights");
+    aim_ = device.kernel("samplers/adaptive/adaptive_samples.cl", "adaptive_aim", defines, "samples");
+    add_ = device.kernel("samplers/adaptive/adaptive_samples.cl", "adaptive_add", defines, "samples");
 }
 
 Arguments AdaptiveStage::draws() const {

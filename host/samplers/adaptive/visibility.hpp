@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "stages/cuts.hpp"
+#include "samplers/adaptive/cuts.hpp"
 
 namespace manylight {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The file: a line, the render's name, and for each section its name, its number of bytes and
 // these; at last a hash of all.
-#include "pipeline/checkpoint.hpp"
+#include "output/checkpoint.hpp"
 
 #include <fstream>
 #include <sstream>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "pipeline/adaptive.hpp"
+#include "samplers/adaptive/adaptive.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -25,18 +25,31 @@ std::size_t packets_per_pixel(uint light_samples) {
 
 }  // namespace
 
-Adaptive::Adaptive(Device& device, const DeviceScene& scene, unsigned most_tiles, unsigned width,
-                   uint most_light_samples)
-    : cut_stage_(device, scene),
-      visibility_stage_(device, scene),
-      adaptive_stage_(device, scene, packets_for(most_tiles, most_light_samples),
-                      std::size_t{most_tiles} * CELLS_PER_TILE * most_places),
-      cuts_(device, most_tiles),
-      visibility_(device, scene.light_count, most_tiles, std::min(most_tiles, most_in_work)),
-      light_count_(scene.light_count),
-      width_(width) {}
+Adaptive::Adaptive(const SamplerContext& context)
+    : cut_stage_(context.device, context.scene),
+      visibility_stage_(context.device, context.scene),
+      adaptive_stage_(context.device, context.scene,
+                      packets_for(context.tiles, context.light_samples),
+                      std::size_t{context.tiles} * CELLS_PER_TILE * most_places),
+      cuts_(context.device, context.tiles),
+      visibility_(context.device, context.scene.light_count, context.tiles,
+                  std::min(context.tiles, most_in_work)),
+      light_count_(context.scene.light_count),
+      width_(context.width) {}
 
-void Adaptive::start(const Tiles& tiles, const Buffer<Surface>& surfaces, uint seed) {
+Footprint Adaptive::footprint(const SamplerLoad& load) {
+    Footprint out;
+    out.tile = Cuts::tile_bytes() + Visibility::tile_bytes(load.lights) +
+               CELLS_PER_TILE * most_places * sizeof(Expectation);
+    out.tile_buffer = out.tile;
+    out.fixed =
+        packets_for(load.tiles, load.light_samples) * AdaptiveStage::packet_bytes() +
+        std::min<std::size_t>(load.tiles, most_in_work) * Visibility::work_bytes(load.lights);
+    return out;
+}
+
+void Adaptive::begin(const Tiles& tiles, const Buffer<Surface>& surfaces, uint seed,
+                     const RayCount& /*progress*/) {
     const CutOptions options{CUT_CAPACITY, width_ >= wide_image ? 1u : 4u, seed};
     visibility_.counts.clear();
     cut_stage_.make(tiles, surfaces, options, cuts_);
@@ -47,9 +60,8 @@ void Adaptive::start(const Tiles& tiles, const Buffer<Surface>& surfaces, uint s
     factor_ = 0;
 }
 
-void Adaptive::draw(const Tiles& tiles, const PixelSample& sample, uint light_samples,
-                    const Buffer<Surface>& surfaces, Estimates& estimates,
-                    const std::function<bool(const Pass&)>& done) {
+bool Adaptive::draw(const Tiles& tiles, const PixelSample& sample, uint light_samples,
+                    const Buffer<Surface>& surfaces, Estimates& estimates, const Sink& sink) {
     // The first pixels were drawn from next to no knowledge: they are drawn once more, afresh.
     const Pass trial = {0, 1, 0, 0, 0, 0};
     const std::vector<Pass> first_passes = {
@@ -57,10 +69,11 @@ void Adaptive::draw(const Tiles& tiles, const PixelSample& sample, uint light_sa
     const std::vector<Pass> passes = {{0, 8, 0, 0, 0, 0}, {8, 8, 0, 0, 0, 0}};
     if (fresh_)
         pass_over(tiles, trial, sample, light_samples, surfaces, estimates,
-                  [](const Pass&) { return true; });
+                  [](const auto&, std::size_t) { return true; });
     for (const Pass& pass : fresh_ ? first_passes : passes)
-        if (!pass_over(tiles, pass, sample, light_samples, surfaces, estimates, done)) return;
+        if (!pass_over(tiles, pass, sample, light_samples, surfaces, estimates, sink)) return false;
     fresh_ = false;
+    return true;
 }
 
 void Adaptive::save(FrameState& state) {
@@ -73,7 +86,8 @@ void Adaptive::save(FrameState& state) {
     state.put("budget_exposure", exposure_);
 }
 
-void Adaptive::resume(const Tiles& tiles, const FrameState& state) {
+void Adaptive::resume(const Tiles& tiles, const Buffer<Surface>& /*surfaces*/, uint /*seed*/,
+                      const FrameState& state, const RayCount& /*progress*/) {
     state.restore("cut_nodes", cuts_.nodes);
     state.restore("cut_sizes", cuts_.sizes);
     state.restore("cut_probes", cuts_.probes);
@@ -108,7 +122,7 @@ TileKnowledge Adaptive::knowledge(uint tile) {
 // Returns whether to go on.
 bool Adaptive::pass_over(const Tiles& tiles, Pass pass, const PixelSample& sample,
                          uint light_samples, const Buffer<Surface>& surfaces, Estimates& estimates,
-                         const std::function<bool(const Pass&)>& done) {
+                         const Sink& sink) {
     sum_up();
     light_samples_ = light_samples;
     const uint rounds = rounds_for(light_samples);
@@ -128,7 +142,7 @@ bool Adaptive::pass_over(const Tiles& tiles, Pass pass, const PixelSample& sampl
                                  1.f / static_cast<float>(rounds), round == 0, estimates);
             visibility_stage_.learn(part, adaptive_stage_.draws(), visibility_);
         }
-        if (!done(pass)) return false;
+        if (!sink(pass, pass_pixels(pass) * light_samples)) return false;
     }
     is_summed_ = false;
     drawn_pixels_ = std::size_t{tiles.count} * CELLS_PER_TILE * pass.count;
@@ -180,6 +194,20 @@ void Adaptive::set_budget(const std::vector<Expectation>& pixels) {
     }
     factor_ = static_cast<float>(high);
     exposure_ = static_cast<float>(exposure);
+}
+
+Sampler sampler_adaptive() {
+    return {.name = "adaptive",
+            .summary =
+                "by contribution and learned visibility, from a cut of the light tree per tile",
+            .tree = true,
+            .learns = true,
+            .tile_size = ADAPTIVE_TILE,
+            .most_lights = std::size_t{1} << 22,  // draws have 23 bits for a node
+            .footprint = Adaptive::footprint,
+            .make = [](const SamplerContext& context) -> std::unique_ptr<LightSampler> {
+                return std::make_unique<Adaptive>(context);
+            }};
 }
 
 }  // namespace manylight

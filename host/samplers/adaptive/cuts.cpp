@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "stages/cuts.hpp"
+#include "samplers/adaptive/cuts.hpp"
 
 namespace manylight {
 
@@ -14,7 +14,7 @@ Arguments Cuts::arguments() const {
 
 CutStage::CutStage(Device& device, const DeviceScene& scene)
     : scene_(scene.arguments),
-      make_(device.kernel("cuts.cl", "cuts_make", scene.shading, "cuts")) {}
+      make_(device.kernel("samplers/adaptive/cuts.cl", "cuts_make", scene.shading, "cuts")) {}
 
 void CutStage::make(const Tiles& tiles, const Buffer<Surface>& surfaces, const CutOptions& options,
                     Cuts& cuts) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "pipeline/clustering.hpp"
+#include "samplers/contribution/clustering.hpp"
 
 #include <cmath>
 #include <glm/trigonometric.hpp>

@@ -2,14 +2,9 @@
 #pragma once
 
 #include "stages/samples.hpp"
-#include "stages/visibility.hpp"
+#include "samplers/adaptive/visibility.hpp"
 
 namespace manylight {
-
-/// Pixels of a pass over `tiles` tiles.
-[[nodiscard]] inline std::size_t pass_pixels(const Pass& pass) {
-    return std::size_t{pass.tile_count} * CELLS_PER_TILE * pass.count;
-}
 
 /// A node that a pixel drew.
 struct DrawnNode {

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: MIT
+#include "samplers/one_light/one_light.hpp"
+
+namespace manylight {
+
+OneLight::OneLight(const SamplerContext& context, std::string_view file)
+    : stage_(context.device, context.scene, file,
+             std::size_t{context.tiles} * context.tile_size * context.tile_size) {}
+
+bool OneLight::draw(const Tiles& tiles, const PixelSample& sample, uint light_samples,
+                    const Buffer<Surface>& surfaces, Estimates& estimates, const Sink& sink) {
+    return stage_.draw(tiles, sample, light_samples, surfaces, tables_, estimates,
+                       [&](std::size_t samples) { return sink({}, samples); });
+}
+
+Footprint OneLight::footprint(const SamplerLoad& load) {
+    Footprint out;
+    out.tile = std::size_t{load.tile_size} * load.tile_size * SampleStage::item_bytes();
+    return out;
+}
+
+}  // namespace manylight
