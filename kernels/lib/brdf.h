@@ -11,8 +11,11 @@
 
 #if HAS_GGX
 // D V of appendix B: the microfacet distribution times Smith's visibility / (4 N.L N.V).
-// 1 - (N.H)^2 is taken from the cross product: it would cancel for small alpha.
-static float ggx_lobe(float alpha, float3 n, float3 h, float n_in, float n_out) {
+// 1 - (N.H)^2 is taken from the cross product: it would cancel for small alpha. Inlined whatever
+// the compiler thinks: where Intel's runtime (2026.22) called it in a kernel of 16 work-items at
+// once, single ones got infinity.
+__attribute__((always_inline)) static inline float ggx_lobe(float alpha, float3 n, float3 h,
+                                                            float n_in, float n_out) {
     const float a2 = alpha * alpha;
     const float3 sine = cross(n, h);
     const float n_h = dot(n, h);
