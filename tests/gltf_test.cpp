@@ -247,6 +247,7 @@ TEST(gltf, headlights) {
     EXPECT_EQ(scene.lights.size(), 3u);
     EXPECT_EQ(scene.lights[1].position.w, LIGHT_DIRECTIONAL);
     expect_near(scene.lights[1].axis, {0, 0, -1});
+    EXPECT_EQ(scene.lights[1].edge, float4(0.5f, 1, 0, 0));  // its near plane, along its axis
     EXPECT_NEAR(scene.lights[1].emission.r, M_PI, 1e-6);
     EXPECT_GT(scene.lights[1].emission.w, 0);
 }
