@@ -48,7 +48,9 @@ def render(name, *words):
     path = name if isinstance(name, pathlib.Path) else options.folder / name
     done = manylight("render", path, "-o", image, *words)
     expect(done.returncode == 0, f"{path.name} is refused: {done.stderr.strip()[:200]}")
-    return OpenImageIO.ImageBuf(str(image)).get_pixels()[..., :3], done.stdout + done.stderr
+    # An ImageBuf would be the cached one of a render in the same second.
+    pixels = OpenImageIO.ImageInput.open(str(image)).read_image()
+    return pixels[..., :3], done.stdout + done.stderr
 
 
 def refusal(name, *parts):

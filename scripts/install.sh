@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Installs what building and running manylight needs on Debian 12; does nothing where all is there.
 #
-# usage: scripts/install.sh [--tests] [--portability] [--no-intel] [--plots] [--cases]
+# usage: scripts/install.sh [--tests] [--portability] [--no-intel] [--plots] [--cases] [--corpus]
 #   --tests        also what the tests need: GoogleTest, Embree (for manylight bench), Python, Clang
 #                  (to lint kernels), Oclgrind (which sees accesses out of bounds), Chromium and
 #                  Selenium (to click through reports), and Intel's OpenCL runtime for CPUs, where
@@ -12,6 +12,7 @@
 #   --no-intel     without Intel's runtime
 #   --plots        also Matplotlib, which draws the failure atlas and the picture of charts
 #   --cases        also what scripts/cases.sh needs: NumPy and OpenImageIO for Python
+#   --corpus       also what scripts/corpus.sh needs: these and pip
 set -euo pipefail
 
 tests=false
@@ -19,6 +20,7 @@ intel=true
 portability=false
 plots=false
 cases=false
+corpus=false
 for argument in "$@"; do
     case $argument in
         --tests) tests=true ;;
@@ -26,6 +28,7 @@ for argument in "$@"; do
         --portability) portability=true ;;
         --plots) plots=true ;;
         --cases) cases=true ;;
+        --corpus) cases=true corpus=true ;;
         *) echo "install.sh: unknown option $argument" >&2; exit 2 ;;
     esac
 done
@@ -48,6 +51,9 @@ if $plots; then
 fi
 if $cases; then
     packages+=(python3 python3-numpy python3-openimageio)
+fi
+if $corpus; then
+    packages+=(python3-venv)
 fi
 
 missing=()

@@ -1238,7 +1238,12 @@ class CommandTest(unittest.TestCase):
             with self.subTest(arguments=arguments):
                 self.refuse("chart", *arguments, words=words)
         run = self.run_program("chart", "lamp.gltf", "--headlight", "never", code=2)
-        self.assertIn("lamp.gltf: has no lights", run.stderr)
+        self.assertIn("lamp.gltf: has no lights: samplers have none to choose from", run.stderr)
+        scene = json.loads((self.folder / "lamp.gltf").read_text())
+        scene["materials"][0]["extensions"] = {"KHR_materials_unlit": {}}
+        (self.folder / "lamp.gltf").write_text(json.dumps(scene))
+        run = self.run_program("chart", "lamp.gltf", code=2)
+        self.assertIn("lamp.gltf: has no lights, but surfaces that are unlit", run.stderr)
         self.assertEqual(self.files(), ["lamp.gltf", "mine"])
         self.assertEqual((self.folder / "mine" / "thesis.txt").read_text(), "precious")
 

@@ -137,6 +137,92 @@ TEST(gltf_mend, empty_buffers_and_views) {
     EXPECT_THROW((void)file.load(), InputError);
 }
 
+// Exporters write accessors of 0 elements for empty meshes.
+TEST(gltf_mend, accessors_of_no_elements) {
+    GltfTest file;
+    for (const json& empty : {json{{"componentType", 5126}, {"type", "VEC3"}, {"count", 0}},
+                              json{{"componentType", 5126},
+                                   {"type", "VEC3"},
+                                   {"count", 0},
+                                   {"bufferView", 0},
+                                   {"byteOffset", 48}}}) {
+        file.document["accessors"][5] = empty;
+        file.document["meshes"][0]["primitives"][1] = {{"attributes", {{"POSITION", 5}}}};
+        const Scene scene = file.load();
+        EXPECT_EQ(scene.triangle_count(), 1u);
+        expect_one_warning(scene, {"accessors[5].count", "is 0", "left out"});
+    }
+    file.document["accessors"][5] = {{"componentType", 5123}, {"type", "SCALAR"}, {"count", 0}};
+    file.document["meshes"][0]["primitives"][1] = {{"attributes", {{"POSITION", 1}}},
+                                                   {"indices", 5}};
+    const Scene scene = file.load();
+    EXPECT_EQ(scene.vertices.size(), 3u);  // of the other primitive alone
+    expect_one_warning(scene, {"accessors[5].count"});
+    // Values for vertices that there are must be as many.
+    file.document["meshes"][0]["primitives"].erase(1);
+    file.document["accessors"][5] = {{"componentType", 5126}, {"type", "VEC3"}, {"count", 0}};
+    file.primitive()["attributes"]["NORMAL"] = 5;
+    EXPECT_THROW((void)file.load(), InputError);
+}
+
+TEST(gltf_mend, animation_channels_of_no_keyframes) {
+    GltfTest file;
+    const int no_times = file.add_floats({0}, "SCALAR", 0);
+    const int nothing = file.add_floats({0}, "VEC3", 0);
+    const int times = file.add_floats({0, 1}, "SCALAR", 2);
+    const int moves = file.add_floats({5, 0, 0, 7, 0, 0}, "VEC3", 2);
+    const json pointer = {
+        {"path", "pointer"},
+        {"extensions", {{"KHR_animation_pointer", {{"pointer", "/nodes/0/translation"}}}}}};
+    const json path = {{"node", 0}, {"path", "translation"}};
+    const auto expect_place = [&](int input, int output, const json& target, glm::vec3 place) {
+        file.document["animations"] = {{{"samplers", {{{"input", input}, {"output", output}}}},
+                                        {"channels", {{{"sampler", 0}, {"target", target}}}}}};
+        const Scene scene = file.load(0.5);
+        expect_near(triangle(scene, 0)[0], place);
+        expect_one_warning(scene, {"accessors[5].count", "1 more", "animation channels"});
+    };
+    for (const json& target : {path, pointer}) {
+        expect_place(no_times, nothing, target, {0, 0, 0});
+        expect_place(times, nothing, target, {0, 0, 0});
+        expect_place(no_times, moves, target, {0, 0, 0});
+        expect_place(times, moves, target, {6, 0, 0});
+    }
+}
+
+TEST(gltf_mend, instances_of_no_number) {
+    GltfTest file;
+    file.document["extensionsUsed"] = {"EXT_mesh_gpu_instancing"};
+    file.document["accessors"].push_back({{"componentType", 5126}, {"type", "VEC3"}, {"count", 0}});
+    file.document["accessors"].push_back({{"componentType", 5126}, {"type", "VEC3"}, {"count", 2}});
+    json& node = file.document["nodes"][0];
+    json& attributes = node["extensions"]["EXT_mesh_gpu_instancing"]["attributes"];
+    attributes = {{"TRANSLATION", 5}};
+    const Scene scene = file.load();
+    EXPECT_EQ(scene.seen_triangle_count(), 0u);
+    expect_one_warning(scene, {"accessors[5].count", "instances"});
+    for (const auto& [translation, scale] : {std::pair{5, 6}, {6, 5}}) {
+        attributes = {{"TRANSLATION", translation}, {"SCALE", scale}};
+        EXPECT_THROW((void)file.load(), InputError) << translation;
+    }
+}
+
+TEST(gltf_mend, coordinates_of_no_accessor) {
+    GltfTest file = textured();
+    file.document["images"] = {{{"uri", write_texel("texel.png", {255, 0, 0, 255})}}};
+    json& texture = file.document["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"];
+    texture = {{"index", 0}};
+    file.primitive()["attributes"]["TEXCOORD_1"] = 99;
+    expect_one_warning(file.load(),
+                       {"meshes[0].primitives[0].attributes.TEXCOORD_1", "is no accessor"});
+    texture["texCoord"] = 1;  // as where the attribute is absent
+    const Scene scene = file.load();
+    EXPECT_EQ(scene.warnings.size(), 2u);
+    for (const glm::vec2& uv : scene.coordinates[0]) EXPECT_EQ(uv, glm::vec2(0));
+    file.primitive()["attributes"]["NORMAL"] = 99;
+    EXPECT_THROW((void)file.load(), InputError);
+}
+
 // A chunk's length says where the next one starts, whatever it is, or where its padding does.
 TEST(gltf_mend, chunks_that_are_not_padded) {
     GltfTest file;

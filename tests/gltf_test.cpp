@@ -247,6 +247,7 @@ TEST(gltf, headlights) {
     EXPECT_EQ(scene.lights.size(), 3u);
     EXPECT_EQ(scene.lights[1].position.w, LIGHT_DIRECTIONAL);
     expect_near(scene.lights[1].axis, {0, 0, -1});
+    EXPECT_EQ(scene.lights[1].edge, float4(0.5f, 1, 0, 0));  // its near plane, along its axis
     EXPECT_NEAR(scene.lights[1].emission.r, M_PI, 1e-6);
     EXPECT_GT(scene.lights[1].emission.w, 0);
 }
@@ -462,8 +463,27 @@ TEST(gltf, quantized_attributes) {
     expect_near(triangle(scene, 0)[2], {0, -16384 / 32767.f, 0});
 }
 
+// Of a mesh and one of its attributes, parts within parts.
+std::unique_ptr<draco::GeometryMetadata> draco_metadata(std::uint32_t attribute) {
+    auto whole = std::make_unique<draco::GeometryMetadata>();
+    whole->AddEntryString("name", "strip");
+    for (const char* name : {"a", "b"}) {
+        auto part = std::make_unique<draco::Metadata>();
+        part->AddEntryInt("number", 3);
+        auto small = std::make_unique<draco::Metadata>();
+        small->AddEntryDoubleArray("numbers", std::vector<double>(100));
+        part->AddSubMetadata("small", std::move(small));
+        whole->AddSubMetadata(name, std::move(part));
+    }
+    auto one = std::make_unique<draco::AttributeMetadata>();
+    one->set_att_unique_id(attribute);
+    one->AddEntryString("unit", "none");
+    whole->AddAttributeMetadata(std::move(one));
+    return whole;
+}
+
 // KHR_draco_mesh_compression, written by the library's encoder: a strip of squares, its indices in
-// all types; both of Draco's ways to store triangles.
+// all types; both of Draco's ways to store triangles, without metadata and with.
 TEST(gltf, draco) {
     constexpr int squares = 5;
     constexpr int points = 2 * squares + 2;
@@ -491,7 +511,9 @@ TEST(gltf, draco) {
     }
     const std::unique_ptr<draco::Mesh> mesh = builder.Finalize();
     ASSERT_EQ(mesh->num_points(), unsigned{points});
-    for (const bool is_edgebreaker : {false, true}) {
+    for (const auto& [has_metadata, is_edgebreaker] :
+         {std::pair{false, false}, {false, true}, {true, false}, {true, true}}) {
+        if (has_metadata) mesh->AddMetadata(draco_metadata(mesh->attribute(color)->unique_id()));
         for (const int type : {5121, 5123, 5125}) {
             draco::Encoder encoder;
             encoder.SetEncodingMethod(is_edgebreaker ? draco::MESH_EDGEBREAKER_ENCODING

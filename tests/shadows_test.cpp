@@ -271,6 +271,34 @@ TEST(shadows, surfaces_do_not_shadow_themselves) {
     }
 }
 
+// A directional light that starts from a plane is not kept off by what is before that, as a
+// camera's by the ceiling above it.
+TEST(shadows, directional_light_from_a_plane) {
+    for (const bool is_above : {false, true}) {
+        SceneMaker maker;
+        Mesh room;
+        room.add_quad({-9, 0, 9}, {18, 0, 0}, {0, 0, -18});
+        room.add_quad({-9, 2, -9}, {18, 0, 0}, {0, 0, 18});
+        maker.add(room, maker.add(diffuse(glm::vec3(1))));
+        const glm::vec3 place(0, is_above ? 3 : 1, 0);
+        maker.add(directional_light_from(place, {0.3f, -1, 0}, glm::vec3(1)));
+        test::TestScene s{maker.finish(), {}, 64, 48};
+        s.camera = make_camera(look({0, 1.5, 0}, {0.01, 0, 0}, 0.6), s.width, s.height);
+        for (const char* sampler : {"exhaustive", "adaptive", "ris", "power"}) {
+            RenderOptions options;
+            options.sampler = sampler;
+            options.spp = 1;
+            FOR_EACH_DEVICE(device) {
+                Image image = test::render(device, s, options).image;
+                unsigned lit = 0;
+                for (unsigned y = 0; y < s.height; ++y)
+                    for (unsigned x = 0; x < s.width; ++x) lit += image.at(x, y)[0] > 0 ? 1 : 0;
+                EXPECT_EQ(lit, is_above ? 0u : 64u * 48) << sampler;
+            }
+        }
+    }
+}
+
 // The light's edge on a ball of few triangles with vertex normals runs where that of a round ball
 // does, and not along the triangles that turn from the light.
 TEST(shadows, terminator_of_a_smooth_ball) {

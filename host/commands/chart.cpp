@@ -127,7 +127,10 @@ int run_chart(const ChartArguments& arguments) {
     if (scene.width == 0 && scene.height == 0) scene.height = default_height;
     const LoadedScene loaded = load(scene, options.quiet);
     if (loaded.scene.lights.empty())
-        throw InputError("{}: has no lights: there is nothing to chart", loaded.scene.file);
+        throw InputError(
+            "{}: has no lights{}: samplers have none to choose from, and there is nothing to "
+            "compare (--headlight always adds one)",
+            loaded.scene.file, is_dark(loaded.scene) ? "" : ", but surfaces that are unlit");
     const double load_seconds = seconds_since(start);
     const Device device = Device::open(scene.device, scene.threads, scene.lanes);
     const auto build_start = Clock::now();

@@ -181,8 +181,17 @@ Unshadowed shade(const glm::dvec3& position, const Surface& surface, const Mater
     out.value = (f.diffuse + f.specular * share) * e.light * cosine;
     out.shadow.origin = position + horizon * static_cast<double>(surface.horizon.w);
     out.shadow.direction = e.infinite ? e.towards : e.target - out.shadow.origin;
-    if (!e.infinite) out.shadow.end = 1;
     out.rounding = {origin_rounding(surface, out.shadow.origin), e.moved};
+    if (!e.infinite) {
+        out.shadow.end = 1;
+    } else if (light.edge.y != 0) {
+        const double along = glm::dot(glm::dvec3(light.axis), out.shadow.origin);
+        const double length = std::max(along - light.edge.x, 1e-30);
+        out.shadow.direction *= length;
+        out.shadow.end = 1;
+        out.rounding.end = glm::dvec3(
+            4 * epsilon * (glm::length(out.shadow.origin) + std::abs(double{light.edge.x})));
+    }
     return out;
 }
 

@@ -256,6 +256,8 @@ void add_headlight(Scene& scene, const View& view) {
     if (view.orthographic) {
         light.position.w = LIGHT_DIRECTIONAL;
         light.axis = float4(glm::vec3(forward), 0);
+        const glm::dvec3 place = glm::dvec3(view.to_world[3]) + view.near * forward;
+        light.edge = float4(static_cast<float>(glm::dot(forward, place)), 1, 0, 0);
         light.emission = float4(glm::vec3(static_cast<float>(pi)), 0);
     } else {
         const glm::dvec3 place = glm::dvec3(view.to_world[3]) + view.near * forward;

@@ -35,8 +35,10 @@ class BoundedDecoder : public Decoder {
     std::size_t most_bytes_;
 };
 
+constexpr std::size_t header_bytes = 11;
+
 // One compressed primitive. Source of the layout: Draco bitstream specification 2.2, sections 4
-// (header) and 6 (connectivity).
+// (header), 5 (metadata) and 6 (connectivity).
 class Primitive {
   public:
     Primitive(const GltfFile& file, const tinygltf::Model& model, Accessors& accessors,
@@ -51,7 +53,11 @@ class Primitive {
     void decode() {
         vertices_ = model_.accessors[primitive_.attributes.at("POSITION")].count;
         triangles_ = model_.accessors[primitive_.indices].count / 3;
-        const std::span<const unsigned char> bytes = accessors_.view_bytes(json_["bufferView"]);
+        const std::span<const unsigned char> stored = accessors_.view_bytes(json_["bufferView"]);
+        check_header(stored);
+        std::vector<unsigned char> without;
+        std::span<const unsigned char> bytes = stored;
+        if ((stored[10] & 0x80) != 0) bytes = without = without_metadata(stored);
         check_counts(bytes);
         if (bytes[8] == 1)
             decode_as<draco::MeshEdgebreakerDecoder>(bytes);
@@ -91,29 +97,66 @@ class Primitive {
             refuse("its data have {} vertices, but POSITION has {}", vertices, vertices_);
     }
 
-    // Before anything is decoded, so that no data can ask for all memory.
-    void check_counts(std::span<const unsigned char> bytes) const {
-        constexpr std::size_t header = 11;
-        if (bytes.size() <= header || std::memcmp(bytes.data(), "DRACO", 5) != 0)
+    void check_header(std::span<const unsigned char> bytes) const {
+        if (bytes.size() <= header_bytes || std::memcmp(bytes.data(), "DRACO", 5) != 0)
             refuse("bufferView {} holds no Draco data", json_["bufferView"].dump());
         const int version = bytes[5] * 256 + bytes[6];
         if (version != 0x202) refuse("Draco version {}.{} is not 2.2", bytes[5], bytes[6]);
         if (bytes[7] != 1) refuse("its Draco data are no mesh");
-        if ((bytes[10] & 0x80) != 0) refuse("its Draco data have metadata, which are not read");
-        const bool is_edgebreaker = bytes[8] == 1;
-        std::size_t at = header + (is_edgebreaker ? 1 : 0);
-        const auto number = [&] {
-            std::uint64_t value = 0;
-            for (int shift = 0; shift < 35; shift += 7) {
-                if (at >= bytes.size()) refuse("its Draco data end early");
-                value |= std::uint64_t{bytes[at] & 0x7fu} << shift;
-                if ((bytes[at++] & 0x80) == 0) break;
-            }
-            return value;
+    }
+
+    // A number of 7 bits a byte, low ones first; `at` moves behind it.
+    std::uint64_t number(std::span<const unsigned char> bytes, std::size_t& at) const {
+        std::uint64_t value = 0;
+        for (int shift = 0; shift < 35; shift += 7) {
+            if (at >= bytes.size()) refuse("its Draco data end early");
+            value |= std::uint64_t{bytes[at] & 0x7fu} << shift;
+            if ((bytes[at++] & 0x80) == 0) break;
+        }
+        return value;
+    }
+
+    // The same data without what they say about the mesh and its attributes, which shows nothing.
+    [[nodiscard]] std::vector<unsigned char> without_metadata(
+        std::span<const unsigned char> bytes) const {
+        std::size_t at = header_bytes;
+        const auto skip = [&](std::uint64_t count) {
+            if (count > bytes.size() - at) refuse("its Draco data end early");
+            at += count;
         };
+        const auto skip_name = [&] {
+            skip(1);
+            skip(bytes[at - 1]);
+        };
+        const auto skip_metadata = [&] {
+            std::uint64_t left = 1;  // one, and those below it, which have names
+            for (bool is_first = true; left > 0; --left, is_first = false) {
+                if (!is_first) skip_name();
+                for (std::uint64_t entries = number(bytes, at); entries > 0; --entries) {
+                    skip_name();
+                    skip(number(bytes, at));
+                }
+                left += number(bytes, at);
+            }
+        };
+        for (std::uint64_t attributes = number(bytes, at); attributes > 0; --attributes) {
+            (void)number(bytes, at);  // its identifier
+            skip_metadata();
+        }
+        skip_metadata();  // the mesh's
+        std::vector<unsigned char> out(bytes.begin(), bytes.end());
+        out[10] &= 0x7f;
+        out.erase(out.begin() + header_bytes, out.begin() + static_cast<std::ptrdiff_t>(at));
+        return out;
+    }
+
+    // Before anything is decoded, so that no data can ask for all memory.
+    void check_counts(std::span<const unsigned char> bytes) const {
+        const bool is_edgebreaker = bytes[8] == 1;
+        std::size_t at = header_bytes + (is_edgebreaker ? 1 : 0);
         // Edgebreaker's vertices are those of the connectivity, of which several may be one.
-        const std::uint64_t first = number();
-        const std::uint64_t second = number();
+        const std::uint64_t first = number(bytes, at);
+        const std::uint64_t second = number(bytes, at);
         if (!is_edgebreaker) return check_counts(second, first);
         if (second != triangles_ || first > 3 * second)
             refuse("its data have {} triangles of {} vertices, but its indices are of {}", second,

@@ -537,8 +537,14 @@ class Loader {
         return mode >= 0 && mode <= TINYGLTF_MODE_LINE_STRIP;
     }
 
-    static bool is_rendered(const tinygltf::Primitive& primitive) {
-        return !is_lines_or_points(primitive.mode) && primitive.attributes.contains("POSITION");
+    [[nodiscard]] bool is_empty(const tinygltf::Primitive& primitive) const {
+        return model_.accessors[primitive.attributes.at("POSITION")].count == 0 ||
+               (primitive.indices >= 0 && model_.accessors[primitive.indices].count == 0);
+    }
+
+    [[nodiscard]] bool is_rendered(const tinygltf::Primitive& primitive) const {
+        return !is_lines_or_points(primitive.mode) && primitive.attributes.contains("POSITION") &&
+               !is_empty(primitive);
     }
 
     static bool is_list(int mode) { return mode == TINYGLTF_MODE_TRIANGLES || mode == -1; }
@@ -556,6 +562,7 @@ class Loader {
                 ++without_position_;
                 continue;
             }
+            if (is_empty(primitive)) continue;
             add_primitive(primitive, where, node, to_world);
         }
     }

@@ -34,6 +34,7 @@ class Mender {
         note_bright_emission();
         note_textures_without_image();
         note_empty_data();
+        take_out_coordinates_without_accessor();
         hide_nodes();
         if (!variant.empty()) choose_variant(variant);
         if (json_.contains("materials"))
@@ -137,6 +138,34 @@ class Mender {
                 if (bytes["byteLength"] == 0)
                     file_.notes.add(place + ".byteLength", "is 0; nothing is there");
             });
+        for_each("accessors", [&](const json& accessor, const std::string& place) {
+            if (accessor["count"] == 0)
+                file_.notes.add(place + ".count",
+                                "is 0; primitives, instances and animation channels of it are "
+                                "left out");
+        });
+    }
+
+    void take_out_coordinates_without_accessor() {
+        const std::size_t accessors = json_.contains("accessors") ? json_["accessors"].size() : 0;
+        if (!json_.contains("meshes")) return;
+        for (std::size_t m = 0; m < json_["meshes"].size(); ++m) {
+            json& primitives = json_["meshes"][m]["primitives"];
+            for (std::size_t p = 0; p < primitives.size(); ++p) {
+                json& attributes = primitives[p]["attributes"];
+                for (auto at = attributes.begin(); at != attributes.end();) {
+                    if (at.key().starts_with("TEXCOORD_") &&
+                        !(at->is_number_unsigned() && at->get<std::size_t>() < accessors)) {
+                        file_.notes.add(
+                            fmt::format("meshes[{}].primitives[{}].attributes.{}", m, p, at.key()),
+                            "is no accessor; it is left out");
+                        at = attributes.erase(at);
+                    } else {
+                        ++at;
+                    }
+                }
+            }
+        }
     }
 
     template <class Function>

@@ -89,6 +89,12 @@ std::vector<glm::dvec4> sample(const GltfFile& file, const tinygltf::Model& mode
                        shape == Shape::rotation);
 }
 
+// Whether a sampler of the first animation has no keyframes, or nothing at them: it moves nothing.
+bool is_empty(const tinygltf::Model& model, int index) {
+    const tinygltf::AnimationSampler& sampler = model.animations.front().samplers[index];
+    return model.accessors[sampler.input].count == 0 || model.accessors[sampler.output].count == 0;
+}
+
 constexpr const char* pointer_extension = "KHR_animation_pointer";
 
 // Whether what is there shows in an image, and is checked when it has changed.
@@ -137,6 +143,7 @@ void point_animation(GltfFile& file, double seconds) {
     const tinygltf::Model model = parse_gltf(file);
     Accessors accessors(file, model);
     for (const auto& [pointer, sampler] : targets) {
+        if (is_empty(model, sampler)) continue;
         try {
             if (!file.json.contains(json::json_pointer(pointer).parent_pointer()))
                 throw InputError("{}: animations[0]: nothing has what '{}' names", file.path,
@@ -184,7 +191,7 @@ void Pose::animate(Accessors& accessors, double seconds, std::vector<Transform>&
     for (const tinygltf::AnimationChannel& channel : model_.animations.front().channels) {
         const int node = channel.target_node;
         const std::string& path = channel.target_path;
-        if (node < 0 || path == "pointer") continue;
+        if (node < 0 || path == "pointer" || is_empty(model_, channel.sampler)) continue;
         const Attribute kind = path == "weights"    ? Attribute::scalar
                                : path == "rotation" ? Attribute::rotation
                                                     : Attribute::position;
@@ -270,9 +277,9 @@ std::vector<glm::dmat4> mesh_instances(const GltfFile& file, int node, Accessors
         if (!attributes.contains(key)) return values;
         const std::string where = fmt::format("nodes[{}].extensions.{}.{}", node, instancing, key);
         values = accessors.vectors(attributes[key], kind, where);
-        if (!out.empty() && out.size() != values.size())
+        if (values.size() != count_instances(file, node))
             throw InputError("{}: {}: {} values for {} instances", file.path, where, values.size(),
-                             out.size());
+                             count_instances(file, node));
         out.resize(values.size(), glm::dmat4(1));
         return values;
     };

@@ -165,8 +165,9 @@ void add_emitters(Scene& scene, unsigned points);
 
 /// Adds a light of the camera's own to a scene that has its other lights, last of the file's: a
 /// perspective camera's is a point in the middle of its near plane, an orthographic one's shines
-/// along its view. A white surface that faces the camera has about 1 cd/m2, where the camera is a
-/// point as far from it as from the scene's middle, or as far as the scene's radius.
+/// along its view, from that plane on. A white surface that faces the camera has about 1 cd/m2,
+/// where the camera is a point as far from it as from the scene's middle, or as far as the scene's
+/// radius.
 void add_headlight(Scene& scene, const View& view);
 
 /// The camera of that name, or the first for an empty name; a scene without cameras is framed from

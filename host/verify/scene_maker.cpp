@@ -67,6 +67,12 @@ Light directional_light(glm::vec3 direction, glm::vec3 illuminance) {
             float4(illuminance, 0)};
 }
 
+Light directional_light_from(glm::vec3 place, glm::vec3 direction, glm::vec3 illuminance) {
+    Light light = directional_light(direction, illuminance);
+    light.edge = float4(glm::dot(glm::vec3(light.axis), place), 1, 0, 0);
+    return light;
+}
+
 Light oriented_light(glm::vec3 position, glm::vec3 normal, glm::vec3 intensity) {
     return {float4(position, LIGHT_ORIENTED), float4(glm::normalize(normal), 0),
             float4(0, 0, 0, 1e-5f), float4(intensity, 0)};

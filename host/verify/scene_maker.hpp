@@ -19,6 +19,9 @@ namespace manylight {
 [[nodiscard]] Light spot_light(glm::vec3 position, glm::vec3 direction, glm::vec3 intensity,
                                float inner, float outer, float range = 0);
 [[nodiscard]] Light directional_light(glm::vec3 direction, glm::vec3 illuminance);
+/// From the plane through `place` on.
+[[nodiscard]] Light directional_light_from(glm::vec3 place, glm::vec3 direction,
+                                           glm::vec3 illuminance);
 [[nodiscard]] Light oriented_light(glm::vec3 position, glm::vec3 normal, glm::vec3 intensity);
 
 /// A ball with vertex normals.

@@ -44,6 +44,7 @@ VerifyScene all_lights() {
         maker.add(oriented_light({x, 2.1f, 0.3f}, {0.2f, -1, 0.3f}, {0.6f, 0.7f, 0.4f}));
     }
     maker.add(directional_light({0.4f, -1, -0.5f}, {0.6f, 0.6f, 0.5f}));
+    maker.add(directional_light_from({0, 0.8f, 0}, {-0.5f, -1, 0.2f}, {0.4f, 0.5f, 0.6f}));
     return {"lights", "every kind of light, with and without ranges; metals, vertex normals",
             maker.finish(), look({0.3, 1.5, 3.6}, {0, 0.6, 0}, 0.9)};
 }

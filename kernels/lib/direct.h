@@ -51,7 +51,10 @@ static float3 unshadowed(const Receiver* r, __global const Light* light, float2 
     if (cosine <= 0.0f || dot(r->horizon, s.direction) <= 0.0f) return (float3)(0.0f);
     shadow->origin = shadow_origin(r);
     shadow->direction = s.infinite ? s.direction : s.target - shadow->origin;
-    shadow->end = s.infinite ? INFINITY : 1.0f;
+    shadow->end = 1.0f;
+#if HAS_DIRECTIONAL
+    if (s.infinite) shadow->end = directional_end(light, shadow->origin);
+#endif
     return brdf(r->material, r->normal, s.direction, r->to_camera,
                 r->reflects ? s.solid_angle : 0.0f) *
            s.emitted * cosine;

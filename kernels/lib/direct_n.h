@@ -127,7 +127,9 @@ INLINE Direct_n direct_n(const Lights_n* l, const Points_n* p, const Origins_n* 
     d.x = select(d.x, wx, infinite);
     d.y = select(d.y, wy, infinite);
     d.z = select(d.z, wz, infinite);
-    d.end = select(d.end, (float_n)(INFINITY), infinite);
+    const float_n to_plane = dot3_n(l->ax, l->ay, l->az, from->x, from->y, from->z) - l->ex;
+    const float_n end = select(max(to_plane, 1e-30f), (float_n)(INFINITY), l->ey == 0.0f);
+    d.end = select(d.end, end, infinite);
 #endif
     const float_n incident = dot3_n(p->nx, p->ny, p->nz, wx, wy, wz);
     const int_n lit = (incident > 0.0f) & (dot3_n(from->gx, from->gy, from->gz, wx, wy, wz) > 0.0f);

@@ -64,6 +64,12 @@ static LightSample light_spot(__global const Light* light, float3 position, floa
 #endif
 
 #if HAS_DIRECTIONAL
+// Where shadow rays to it end.
+static float directional_end(__global const Light* light, float3 origin) {
+    if (light->edge.y == 0.0f) return INFINITY;
+    return max(dot(light->axis.xyz, origin) - light->edge.x, 1e-30f);  // 0 would be no ray
+}
+
 static LightSample light_directional(__global const Light* light, float3 position, float2 u) {
     LightSample s;
     s.direction = -light->axis.xyz;

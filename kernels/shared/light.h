@@ -26,15 +26,16 @@ enum LightKind { LIGHT_KINDS(LIGHT_KIND_VALUE) light_kind_count = 6 };
 ///             position.xyz  axis.xyz                edge.xyz         emission.rgb
 /// point       position      -                       -                intensity, cd
 /// spot        position      unit, where it shines   x, y: as below   intensity on the axis, cd
-/// directional -             unit, where it shines   -                illuminance, lx
+/// directional -             unit, where it shines   x, y: as below   illuminance, lx
 /// oriented    position      unit normal             -                intensity on the normal, cd
 /// triangle    vertex 0      vertex 1 - vertex 0     vertex 2 - 0     radiance, cd/m2
 /// quad        a corner      a side from there       the other side   radiance, cd/m2
 ///
 /// A spot's intensity at an angle off its axis is that on the axis x clamp((y - v) x, 0, 1)^2,
 /// where v = 1 - cos(angle): KHR_lights_punctual, but for cosines, which do not tell small angles
-/// apart. An oriented point is Lambert's (cosine). A quad is a parallelogram; it and a triangle face
-/// cross(axis, edge).
+/// apart. A directional light comes from infinitely far if its y is 0, or else from the plane
+/// dot(axis, p) = x: nothing before that casts a shadow. An oriented point is Lambert's (cosine). A
+/// quad is a parallelogram; it and a triangle face cross(axis, edge).
 // clang-format on
 typedef struct Light {
     float4 position;  // w: the LightKind
