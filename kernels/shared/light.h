@@ -33,8 +33,8 @@ enum LightKind { LIGHT_KINDS(LIGHT_KIND_VALUE) light_kind_count = 6 };
 ///
 /// A spot's intensity at an angle off its axis is that on the axis x clamp((y - v) x, 0, 1)^2,
 /// where v = 1 - cos(angle): KHR_lights_punctual, but for cosines, which do not tell small angles
-/// apart. An oriented point is Lambert's (cosine). A quad is a parallelogram; it and a triangle face
-/// cross(axis, edge).
+/// apart. An oriented point is Lambert's (cosine). A quad is a parallelogram; it and a triangle
+/// face cross(axis, edge).
 // clang-format on
 typedef struct Light {
     float4 position;  // w: the LightKind
