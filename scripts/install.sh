@@ -34,7 +34,8 @@ packages=(
     g++ cmake ninja-build
     ocl-icd-opencl-dev opencl-c-headers opencl-clhpp-headers pocl-opencl-icd
     libopenimageio-dev openimageio-tools libglm-dev libtinygltf-dev nlohmann-json3-dev
-    libcli11-dev libfmt-dev libmeshoptimizer-dev libdraco-dev libjs-chart.js fonts-dejavu-core
+    libcli11-dev libfmt-dev libmeshoptimizer-dev libdraco-dev libboost-dev libjs-chart.js
+    fonts-dejavu-core
 )
 if $tests; then
     packages+=(libgtest-dev libembree-dev python3 python3-venv clang-15 clang-format-14
