@@ -2,6 +2,7 @@
 #include "statistics.hpp"
 
 #include <algorithm>
+#include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 #include <numeric>
 
@@ -41,14 +42,8 @@ Ratio ratio_of(const std::vector<double>& ratios) {
 }
 
 double student_quantile(std::size_t degrees) {
-    constexpr double exact[] = {12.706, 4.303, 3.182, 2.776};
-    if (degrees <= std::size(exact)) return exact[degrees - 1];
-    // Cornish and Fisher's expansion, to 0.2% from 5 degrees on.
-    const double z = 1.959964;
-    const auto k = static_cast<double>(degrees);
-    return z + (z * z * z + z) / (4 * k) +
-           (5 * std::pow(z, 5) + 16 * z * z * z + 3 * z) / (96 * k * k) +
-           (3 * std::pow(z, 7) + 19 * std::pow(z, 5) + 17 * z * z * z - 15 * z) / (384 * k * k * k);
+    const boost::math::students_t student(static_cast<double>(degrees));
+    return quantile(complement(student, 0.025));
 }
 
 }  // namespace manylight

@@ -170,7 +170,8 @@ def breaks_of(sweeps, sampler):
     limit = BREAKS.get(sampler, BREAKS_OTHERWISE)
     worst = []
     for sweep in sweeps:
-        points = [p for p in sweep["points"] if (p["results"][sampler] or {}).get("ratio", 0) > limit]
+        points = [p for p in sweep["points"]
+                  if (p["results"][sampler] or {}).get("ratio", 0) > limit]
         if points:
             point = max(points, key=lambda p: p["results"][sampler]["ratio"])
             worst.append((sweep, point))
@@ -207,9 +208,9 @@ def draw_breaks(sweeps, sampler):
             for ax, name in zip(row, (None, sampler, best)):
                 ax.imshow(render(sweep, point, name), interpolation="nearest")
                 ax.axis("off")
+                setting = f"{sweep['scene']} {sweep['option']} {text(point['value'])}"
                 ax.set_title(f"{name}, relMSE {results[name]['relmse']:.2g}" if name else
-                             f"{sweep['scene']} {sweep['option']} {text(point['value'])}: reference",
-                             fontsize=8)
+                             f"{setting}: reference", fontsize=8)
         figure.tight_layout(pad=0.4)
         figure.savefig(path, dpi=100, pil_kwargs={"quality": 80})
         plt.close(figure)

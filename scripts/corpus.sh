@@ -23,7 +23,8 @@ list_packages() {
     mirror=$(apt-get indextargets --format '$(CREATED_BY) $(RELEASE) $(COMPONENT) $(REPO_URI)' |
         awk '/^Packages bookworm main / { print $4; exit }')
     for kind in deb deb-src; do
-        echo "$kind [signed-by=/usr/share/keyrings/debian-archive-keyring.gpg] $mirror bookworm main"
+        echo "$kind [signed-by=/usr/share/keyrings/debian-archive-keyring.gpg]" \
+            "$mirror bookworm main"
     done >"$folder/apt/sources.list"
     apt update
     touch "$folder/apt/listed"

@@ -14,7 +14,8 @@ cmake -G Ninja -B build/fuzz -DMANYLIGHT_FUZZ=ON -DCMAKE_CXX_COMPILER=clang++-15
 cmake --build build/fuzz --target fuzz_scene
 mkdir -p build/fuzz/found build/fuzz/corpus
 cd build/fuzz
-[[ -w /dev/shm ]] && export TMPDIR=/dev/shm  # disks take longer to write a file than it takes to load
+# Disks take longer to write a file than it takes to load.
+[[ -w /dev/shm ]] && export TMPDIR=/dev/shm
 export ASAN_OPTIONS=quarantine_size_mb=16:allocator_may_return_null=0
 export LSAN_OPTIONS=suppressions=../../tests/leaks.supp:print_suppressions=0
 exec ./fuzz_scene corpus ../../tests/fuzz/corpus -runs="$runs" -timeout=2 -malloc_limit_mb=260 \

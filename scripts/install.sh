@@ -3,10 +3,10 @@
 #
 # usage: scripts/install.sh [--tests] [--portability] [--no-intel] [--plots] [--cases] [--corpus]
 #   --tests        also what the tests need: GoogleTest, Embree (for manylight bench), Python, Clang
-#                  (to lint kernels), Oclgrind (which sees accesses out of bounds), Chromium and
-#                  Selenium (to click through reports), and Intel's OpenCL runtime for CPUs, where
-#                  the processor is x86-64 (830 MB, into ~/.cache/manylight), so that two vendors'
-#                  compilers run every kernel
+#                  (to lint kernels), clang-format, Oclgrind (which sees accesses out of bounds),
+#                  Chromium and Selenium (to click through reports), and Intel's OpenCL runtime for
+#                  CPUs, where the processor is x86-64 (830 MB, into ~/.cache/manylight), so that
+#                  two vendors' compilers run every kernel
 #   --portability  also what scripts/portability.sh needs: QEMU, which runs programs as on other
 #                  processors, Oclgrind, Python and Intel's runtime
 #   --no-intel     without Intel's runtime
@@ -37,11 +37,12 @@ packages=(
     g++ cmake ninja-build
     ocl-icd-opencl-dev opencl-c-headers opencl-clhpp-headers pocl-opencl-icd
     libopenimageio-dev openimageio-tools libglm-dev libtinygltf-dev nlohmann-json3-dev
-    libcli11-dev libfmt-dev libmeshoptimizer-dev libdraco-dev libjs-chart.js fonts-dejavu-core
+    libcli11-dev libfmt-dev libmeshoptimizer-dev libdraco-dev libboost-dev libjs-chart.js
+    fonts-dejavu-core
 )
 if $tests; then
-    packages+=(libgtest-dev libembree-dev python3 python3-venv clang-15 oclgrind
-        chromium chromium-driver python3-selenium)
+    packages+=(libgtest-dev libembree-dev python3 python3-venv clang-15 clang-format-14
+        oclgrind chromium chromium-driver python3-selenium)
 fi
 if $portability; then
     packages+=(python3 python3-venv oclgrind qemu-user)
@@ -58,7 +59,8 @@ fi
 
 missing=()
 for package in "${packages[@]}"; do
-    dpkg-query -W -f '${Status}' "$package" 2>/dev/null | grep -q 'ok installed' || missing+=("$package")
+    dpkg-query -W -f '${Status}' "$package" 2>/dev/null | grep -q 'ok installed' ||
+        missing+=("$package")
 done
 if ((${#missing[@]} > 0)); then
     as_root=()

@@ -42,7 +42,8 @@ def material(name, color=(0.8, 0.8, 0.8), roughness=1.0, metallic=0.0, specular=
 
 
 def emission(name, color, strength):
-    return material(name, (0, 0, 0), **{"Emission Color": (*color, 1), "Emission Strength": strength})
+    return material(name, (0, 0, 0),
+                    **{"Emission Color": (*color, 1), "Emission Strength": strength})
 
 
 def socket(made, name):
@@ -145,7 +146,8 @@ def camera(name="camera", location=(4, -6, 4), look_at=(0, 0, 0.5), **settings):
 def stage():
     """A floor, a wall, boxes and a ball, all diffuse."""
     plane(material("floor", (0.7, 0.7, 0.6)), 12)
-    plane(material("wall", (0.6, 0.4, 0.3)), 12, location=(0, 3, 0), rotation_euler=(math.pi / 2, 0, 0))
+    plane(material("wall", (0.6, 0.4, 0.3)), 12, location=(0, 3, 0),
+          rotation_euler=(math.pi / 2, 0, 0))
     cube(material("box", (0.2, 0.5, 0.7)), location=(-1, 0.4, 0.5), rotation_euler=(0, 0, 0.5))
     cube(material("tall", (0.8, 0.8, 0.8)), location=(1.2, 1, 0.9), scale=(0.7, 0.7, 1.8))
     sphere(material("ball", (0.9, 0.5, 0.1)), location=(0.6, -1.2, 0.7))
@@ -182,7 +184,8 @@ def area_lights():
     """Emissive planes: Blender's exporter leaves area lamps out."""
     stage()
     camera()
-    plane(emission("panel", (1, 0.9, 0.8), 20), 1, location=(-1, -2, 4.5), rotation_euler=(0.3, 0, 0))
+    plane(emission("panel", (1, 0.9, 0.8), 20), 1, location=(-1, -2, 4.5),
+          rotation_euler=(0.3, 0, 0))
     plane(emission("tube", (0.3, 0.6, 1), 30), 1, location=(3.5, 0, 1.2), scale=(0.05, 2, 1),
           rotation_euler=(0, -1.2, 0))
 
@@ -192,7 +195,8 @@ def lamps_and_emitters():
     stage()
     camera()
     light("POINT", 200, (-2, -2, 3))
-    plane(emission("panel", (0.2, 0.4, 1), 15), 1, location=(2, -2.5, 3.5), rotation_euler=(0.3, 0, 0))
+    plane(emission("panel", (0.2, 0.4, 1), 15), 1, location=(2, -2.5, 3.5),
+          rotation_euler=(0.3, 0, 0))
 
 
 def textures():
@@ -211,7 +215,8 @@ def textures():
 
 def normal_map():
     camera()
-    image = numpy.stack(numpy.meshgrid(*[numpy.sin(numpy.linspace(0, 4 * math.pi, 256))] * 2), -1) * 0.3
+    image = numpy.stack(numpy.meshgrid(*[numpy.sin(numpy.linspace(0, 4 * math.pi, 256))] * 2),
+                        -1) * 0.3
     z = numpy.sqrt(1 - (image**2).sum(-1, keepdims=True))
     made = material("waves")
     node = made.node_tree.nodes.new("ShaderNodeNormalMap")
@@ -241,7 +246,8 @@ def vertex_colors():
 def leaf(size=128):
     """Alpha of a leaf of blurred edge; [size][size]."""
     x, y = numpy.meshgrid(*[numpy.linspace(-1, 1, size)] * 2)
-    return numpy.clip(4 * (0.8 - numpy.hypot(x, y) - 0.2 * numpy.sin(7 * numpy.arctan2(y, x))), 0, 1)
+    return numpy.clip(4 * (0.8 - numpy.hypot(x, y) - 0.2 * numpy.sin(7 * numpy.arctan2(y, x))), 0,
+                      1)
 
 
 def leaves(made):
@@ -449,10 +455,12 @@ def render_both(make, samples, lighting="COMPAT", more=(), **export):
     cycles = FOLDER / f"{name}-cycles.exr"
     scene.render.filepath = str(cycles.resolve())
     with quiet():
-        bpy.ops.export_scene.gltf(filepath=str(glb.resolve()), export_lights=True, export_cameras=True,
+        bpy.ops.export_scene.gltf(filepath=str(glb.resolve()), export_lights=True,
+                                  export_cameras=True,
                                   export_import_convert_lighting_mode=lighting, **export)
         bpy.ops.render.render(write_still=True)
-    subprocess.run([PROGRAM, "render", glb, "--quiet", "--width", str(width), "--height", str(height),
+    subprocess.run([PROGRAM, "render", glb, "--quiet", "--width", str(width), "--height",
+                    str(height),
                     "--spp", str(samples), "--light-samples", "16", "-o", exr, *more], check=True)
     return load(cycles), load(exr)
 
@@ -466,7 +474,8 @@ def main():
     FOLDER.mkdir(parents=True, exist_ok=True)
     cases = [(make.__name__, make, most, {}) for make, most in SCENES]
     cases += [
-        ("instances as EXT_mesh_gpu_instancing", instances, DIFFUSE, {"export_gpu_instances": True}),
+        ("instances as EXT_mesh_gpu_instancing", instances, DIFFUSE,
+         {"export_gpu_instances": True}),
         ("textures, Draco", textures, DIFFUSE, {"export_draco_mesh_compression_enable": True}),
         ("lamps_and_emitters, Standard", lamps_and_emitters, DIFFUSE,
          {"lighting": "SPEC", "more": ("--lamp-scale", str(1 / LUMENS_PER_WATT))})]
@@ -482,7 +491,8 @@ def main():
         differ = numpy.abs(blocks(ours) - blocks(theirs)).mean() / mean
         good = abs(ratio - 1) <= most and differ <= BLOCKS * most
         failed += not good
-        print(f"{name:40} {ratio:18.4f} {100 * differ:12.2f}%{'' if good else '  MISSED'}", flush=True)
+        print(f"{name:40} {ratio:18.4f} {100 * differ:12.2f}%{'' if good else '  MISSED'}",
+              flush=True)
     if failed:
         print(f"{failed} scenes differ by more than {100 * DIFFUSE:.0f}% (diffuse) or "
               f"{100 * GLOSSY:.0f}% (glossy), or their blocks by {BLOCKS} times as much")

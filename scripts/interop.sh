@@ -11,7 +11,8 @@ scripts/install.sh
 venv=${XDG_CACHE_HOME:-$HOME/.cache}/manylight/blender
 if [[ ! -e $venv/installed ]]; then
     # Blender 4.2 is built for Python 3.11, which is Debian 12's; and it links to these.
-    packages=(python3-venv libxrender1 libxxf86vm1 libxi6 libxfixes3 libxkbcommon0 libsm6 libgl1 libegl1)
+    packages=(python3-venv libxrender1 libxxf86vm1 libxi6 libxfixes3 libxkbcommon0 libsm6 libgl1
+        libegl1)
     as_root=()
     (($(id -u) == 0)) || as_root=(sudo)
     DEBIAN_FRONTEND=noninteractive "${as_root[@]}" apt-get install -y -qq --no-install-recommends \

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Runs every kernel under Oclgrind, which interprets them and sees each access out of bounds and each
-# data race between work-items, whatever the hardware. Takes minutes.
+# Runs every kernel under Oclgrind, which interprets them and sees each access out of bounds and
+# each data race between work-items, whatever the hardware. Takes minutes.
 #
 # usage: scripts/oclgrind.sh [--program FILE] [OPTION ...] [SCENE ...]
 #   --program FILE  the program (default: builds build/manylight)

@@ -120,7 +120,8 @@ def print_table(results):
     print("{:<9}{:>4}{:>12}{:>10}{:>10}{:>16}{:>16}".format(*head))
     for r in results:
         print("{name:<9}{light_samples:>4}{all_lights_s:>12.3f}{uniform_s:>10.3f}"
-              "{contribution_s:>10.3f}{uniform_relmse:>16.5f}{contribution_relmse:>16.5f}".format(**r))
+              "{contribution_s:>10.3f}{uniform_relmse:>16.5f}{contribution_relmse:>16.5f}"
+              .format(**r))
         print("{:<9}{:>4}{:>12}{:>10}{:>10}{uniform_relmse_4:>16.5f}{contribution_relmse_4:>16.5f}"
               .format("", 4, "", "", "", **r))
     print("\nPaired ratios (medians)")
@@ -132,8 +133,8 @@ def print_table(results):
     print("\nrelMSE against the number of light samples: the paper's sampler stops at its bias")
     for r in results:
         for row in r["sweep"]:
-            print("{:<9}N {light_samples:>4}  uniform {uniform:.5f}  contribution {contribution:.5f}"
-                  "  contribution-defensive {defensive:.5f}".format(
+            print("{:<9}N {light_samples:>4}  uniform {uniform:.5f}  "
+                  "contribution {contribution:.5f}  contribution-defensive {defensive:.5f}".format(
                       r["name"], defensive=row["contribution-defensive"], **row))
 
 

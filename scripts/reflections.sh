@@ -11,7 +11,8 @@ folder=build/reflections
 mkdir -p $folder
 build/manylight scene plates -o $folder/plates.glb
 render() {
-    build/manylight render $folder/plates.glb --quiet --height 270 --hide-emitters --pixel-centre "$@"
+    build/manylight render $folder/plates.glb --quiet --height 270 --hide-emitters \
+        --pixel-centre "$@"
 }
 render --sampler exhaustive --spp 400 --seed 999 -o $folder/reference.exr
 for sampler in lighttree adaptive; do

@@ -2,10 +2,11 @@
 """The tables of samplers.sh, which builds the program first.
 
 All images have half the scene's usual size and one or more pixel samples at the pixel's centre (but
-for few-lights), and show what emitters light, not the emitters. Errors are relMSE against an image of all lights, or,
-where those are too many, a long run of sampler adaptive; the mean over seeds. Times are prepare +
-render of --stats: light tree, cuts and learning are in, loading, the BVH and compiling are not. The
-error of a sampler at another one's time is read between its own runs (log-log).
+for few-lights), and show what emitters light, not the emitters. Errors are relMSE against an image
+of all lights, or, where those are too many, a long run of sampler adaptive; the mean over seeds.
+Times are prepare + render of --stats: light tree, cuts and learning are in, loading, the BVH and
+compiling are not. The error of a sampler at another one's time is read between its own runs
+(log-log).
 """
 import argparse
 import itertools
@@ -114,8 +115,8 @@ def error_at(points, seconds):
 
 def never_worse(scenes, seeds, device):
     """Adaptive's error over that of the best other sampler in the same time."""
-    print("largest ratio of relMSE to the best other sampler's in the same time, over 1 to 64 light "
-          "samples and 1 to 16 spp")
+    print("largest ratio of relMSE to the best other sampler's in the same time, over 1 to 64 "
+          "light samples and 1 to 16 spp")
     table = {}
     for scene in scenes:
         make_reference(scene, device)
@@ -212,7 +213,8 @@ def overhead(scenes, seeds, device):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--table", choices=("worth", "never-worse", "overhead", "few-lights", "scale"),
+    parser.add_argument("--table",
+                        choices=("worth", "never-worse", "overhead", "few-lights", "scale"),
                         default="worth")
     parser.add_argument("--scenes", type=pathlib.Path)
     parser.add_argument("--only", default="")

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # How much better is sampler adaptive than others? Tables over scenes:
-#   worth        its error and a light tree's with the same 4 light samples, and in the time that the
-#                light tree takes for 16
+#   worth        its error and a light tree's with the same 4 light samples, and in the time that
+#                the light tree takes for 16
 #   never-worse  the largest ratio of its error to that of the best other sampler in the same time
 #   overhead     what part of a frame with 16 light samples is neither their shading nor their rays
 #   few-lights   error x time of all lights at each pixel sample, and of 4 light samples

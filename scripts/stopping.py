@@ -39,9 +39,11 @@ def main():
     parser.add_argument("--height", type=int, default=64)
     arguments = parser.parse_args()
     FOLDER.mkdir(parents=True, exist_ok=True)
-    listed = subprocess.run([PROGRAM, "scene", "--list"], check=True, capture_output=True, text=True)
+    listed = subprocess.run([PROGRAM, "scene", "--list"], check=True, capture_output=True,
+                            text=True)
     names = [scene["name"] for scene in json.loads(listed.stdout)]
-    print("| Scene | Sampler | spp | relMSE | estimate / relMSE | its median | intervals that hold it |")
+    print("| Scene | Sampler | spp | relMSE | estimate / relMSE | its median |"
+          " intervals that hold it |")
     print("|---|---|---|---|---|---|---|", flush=True)
     for name in arguments.only.split(",") if arguments.only else names:
         scene = FOLDER / f"{name}.glb"
@@ -51,15 +53,16 @@ def main():
             for spp in map(int, arguments.spp.split(",")):
                 estimates, errors, held = [], [], 0
                 for seed in range(arguments.seeds):
-                    estimate, deviation = render(scene, sampler, spp, seed, arguments.height, "image")
+                    estimate, deviation = render(scene, sampler, spp, seed, arguments.height,
+                                                 "image")
                     error = error_of("image") - own
                     estimates.append(estimate)
                     errors.append(error)
                     held += abs(estimate - error) <= 1.96 * deviation
                 ratio = statistics.mean(estimates) / statistics.mean(errors)
                 median = statistics.median(e / f for e, f in zip(estimates, errors))
-                print(f"| `{name}` | {sampler} | {spp} | {statistics.mean(errors):.2g} | {ratio:.2f} |"
-                      f" {median:.2f} | {held} of {arguments.seeds} |", flush=True)
+                print(f"| `{name}` | {sampler} | {spp} | {statistics.mean(errors):.2g} |"
+                      f" {ratio:.2f} | {median:.2f} | {held} of {arguments.seeds} |", flush=True)
 
 
 main()

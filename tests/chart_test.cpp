@@ -70,11 +70,13 @@ TEST(chart, means_and_ratios) {
     EXPECT_FALSE(ratio_of({3}).lower);
 }
 
-// Exceeded with a chance of 2.5% on one side, by the distribution of the tests.
+// A table's: NIST/SEMATECH, "e-Handbook of Statistical Methods", 1.3.6.7.2.
 TEST(chart, student_quantiles) {
-    for (const std::size_t k : {2, 3, 4, 5, 6, 9, 20, 100})
-        EXPECT_NEAR(test::student_tail(student_quantile(k), static_cast<double>(k)), 0.05, 0.001)
-            << k;
+    EXPECT_NEAR(student_quantile(1), 12.706, 0.0005);
+    EXPECT_NEAR(student_quantile(4), 2.776, 0.0005);
+    EXPECT_NEAR(student_quantile(5), 2.571, 0.0005);
+    EXPECT_NEAR(student_quantile(9), 2.262, 0.0005);
+    EXPECT_NEAR(student_quantile(100), 1.984, 0.0005);
 }
 
 TEST(chart, packed_images_keep_what_is_large) {

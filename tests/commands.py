@@ -91,7 +91,8 @@ class CommandTest(unittest.TestCase):
                                  base64.b64encode(values).decode()})
         scene["bufferViews"] += [{"buffer": 1, "byteLength": 8},
                                  {"buffer": 1, "byteOffset": 8, "byteLength": 24}]
-        scene["accessors"] += [{"bufferView": 1, "componentType": 5126, "count": 2, "type": "SCALAR",
+        scene["accessors"] += [{"bufferView": 1, "componentType": 5126, "count": 2,
+                                "type": "SCALAR",
                                 "min": [0], "max": [1]},
                                {"bufferView": 2, "componentType": 5126, "count": 2, "type": "VEC3"}]
         scene["animations"] = [{"samplers": [{"input": 1, "output": 2}], "channels": [
@@ -110,7 +111,8 @@ class CommandTest(unittest.TestCase):
         self.assertEqual(run.stderr, "")     # nor a bar where there is no terminal
 
     def test_options_may_come_before_the_file(self):
-        self.run_program("render", "-q", "--height", 8, "--aov", "depth", "-o", "a.exr", self.cornell)
+        self.run_program("render", "-q", "--height", 8, "--aov", "depth", "-o", "a.exr",
+                         self.cornell)
         self.assertEqual(self.files(), ["a.exr"])
 
     def test_render_outputs_and_stats(self):
@@ -424,8 +426,8 @@ class CommandTest(unittest.TestCase):
         lines = self.run_program("render", "lamp.gltf", "--height", 8, "-q").stderr.splitlines()
         self.assertEqual(lines, [
             "warning: lamp.gltf: extension KHR_materials_clearcoat is not rendered",
-            "warning: lamp.gltf: extension KHR_materials_transmission is not rendered: its surfaces "
-            "are opaque, and block the light of lamps behind them"])
+            "warning: lamp.gltf: extension KHR_materials_transmission is not rendered: its "
+            "surfaces are opaque, and block the light of lamps behind them"])
 
     # What names hold that files or users make up.
 
@@ -461,7 +463,7 @@ class CommandTest(unittest.TestCase):
                     self.assertFalse([line for line in text.splitlines()
                                       if line.startswith("error: fake")], text)
                 if run.returncode != 0:
-                    self.assertEqual(run.stderr.count("\nerror: ") + run.stderr.startswith("error: "), 1)
+                    self.assertEqual(("\n" + run.stderr).count("\nerror: "), 1)
                     self.assertTrue(run.stderr.splitlines()[-1].startswith("error: "), run.stderr)
         for report in ("s.json", "i.json"):
             text = (self.folder / report).read_text()
@@ -477,7 +479,8 @@ class CommandTest(unittest.TestCase):
         run = subprocess.run([PROGRAM, "render", b"a\xff\xc0\xaf\xed\xa0\x80\xe2\x82\xc3\xa9.glb"],
                              capture_output=True, cwd=self.folder)
         self.assertEqual(run.returncode, 2)
-        self.assertEqual(run.stderr, b"error: a\\xff\\xc0\\xaf\\xed\\xa0\\x80\\xe2\\x82\xc3\xa9.glb: "
+        self.assertEqual(run.stderr,
+                         b"error: a\\xff\\xc0\\xaf\\xed\\xa0\\x80\\xe2\\x82\xc3\xa9.glb: "
                                      b"no such file\n")
 
     def test_json_for_programs_holds_no_raw_controls(self):
@@ -632,12 +635,14 @@ class CommandTest(unittest.TestCase):
         self.assertEqual((self.folder / "house.png").read_bytes(), b"the scene's texture")
 
     def test_what_a_killed_process_left_is_in_nobodys_way(self):
-        script = f'touch .x.exr.$$-0.part; exec "{PROGRAM}" render "{self.cornell}" --height 8 -q -o x.exr'
+        script = (f'touch .x.exr.$$-0.part; '
+                  f'exec "{PROGRAM}" render "{self.cornell}" --height 8 -q -o x.exr')
         subprocess.run(["bash", "-c", script], cwd=self.folder, check=True)
         self.assertIn("x.exr", self.files())
 
     def test_layers_need_an_exr(self):
-        self.refuse("render", self.cornell, "-o", "a.png", "--aov", "depth", words=["--aov", ".exr"])
+        self.refuse("render", self.cornell, "-o", "a.png", "--aov", "depth",
+                    words=["--aov", ".exr"])
 
     def test_a_refusal_keeps_the_old_output(self):
         old = self.folder / "a.exr"
@@ -656,7 +661,8 @@ class CommandTest(unittest.TestCase):
                                 (["chart"], "chart: the scene's file"),
                                 (["compare", "a.exr"], "compare: the image that it should be"),
                                 (["compare", "--ref", "a.exr"], "compare: the image to judge"),
-                                (["bench"], "bench: what to measure (traversal, stages or a file)")):
+                                (["bench"],
+                                 "bench: what to measure (traversal, stages or a file)")):
             with self.subTest(arguments=arguments):
                 self.refuse(*arguments, words=[f"error: {what} is missing; 'manylight "
                                                f"{arguments[0]} --help' shows examples"])
@@ -715,7 +721,8 @@ class CommandTest(unittest.TestCase):
                       f"oriented light {nodes[0]['light']} ", "V^", "deviates by",
                       "wrote cornell-pixel.png", "wrote i.json", *facts["explanation"]):
             self.assertIn(words, run.stdout)
-        self.run_program("inspect", self.cornell, "--height", 32, "--pixel", "16,20", "--top-lights",
+        self.run_program("inspect", self.cornell, "--height", 32, "--pixel", "16,20",
+                         "--top-lights",
                          2, "-o", "p.png", "--seed", 4, "--spp", 1, "--light-samples", 2, "--json",
                          "i.json")
         facts = json.loads((self.folder / "i.json").read_text())
@@ -886,7 +893,8 @@ class CommandTest(unittest.TestCase):
                                "--json", "b.json")
         self.assertIn("shadow_incoherent", run.stdout)
         figures = json.loads((self.folder / "b.json").read_text())
-        self.assertEqual(sorted(figures["rays"]), ["primary", "shadow_coherent", "shadow_incoherent"])
+        self.assertEqual(sorted(figures["rays"]),
+                         ["primary", "shadow_coherent", "shadow_incoherent"])
         self.assertGreater(figures["rays"]["primary"]["packets"]["mrays_per_s"], 0)
         self.assertGreater(figures["stages"]["shadows"]["seconds"], 0)
         if "embree" in figures:
@@ -995,7 +1003,8 @@ class CommandTest(unittest.TestCase):
     # chart.
 
     def chart(self, *arguments, folder="cornell-chart"):
-        run = self.run_program("chart", self.cornell, "--cache", "cache", "--height", 16, *arguments)
+        run = self.run_program("chart", self.cornell, "--cache", "cache", "--height", 16,
+                               *arguments)
         return json.loads((self.folder / folder / "chart.json").read_text()), run
 
     def test_chart(self):
@@ -1051,7 +1060,8 @@ class CommandTest(unittest.TestCase):
         self.assertIn("left out: uniform, 60000 light samples, 1 spp", run.stdout)
         self.assertNotIn(60000, [s["light_samples"] for s in chart["settings"]])
         chart, run = self.chart("--seeds", 1, "--most-seconds", 0.05, "--samplers",
-                                "exhaustive,uniform", "--baseline", "uniform", "--light-samples", 60000,
+                                "exhaustive,uniform", "--baseline", "uniform", "--light-samples",
+                                60000,
                                 "--spp", 1)
         self.assertEqual([s["sampler"] for s in chart["settings"]], ["exhaustive"])
         self.assertIn("warning: --baseline uniform", run.stderr)

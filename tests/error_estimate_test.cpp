@@ -273,9 +273,9 @@ TEST(error_estimate, a_missed_deadline_leaves_one_sample) {
     }
 }
 
-// In each of 4 x 4 pixels, 3% are far brighter than the rest. An image that met them less often than
-// it should has the smaller error: stopped at 4 samples by that alone, images are darker on average
-// and vary far more than they were to.
+// In each of 4 x 4 pixels, 3% are far brighter than the rest. An image that met them less often
+// than it should has the smaller error: stopped at 4 samples by that alone, images are darker on
+// average and vary far more than they were to.
 TEST(error_estimate, does_not_stop_small_images_where_they_are_dark) {
     const test::TestScene scene = test::make_scene(
         [](GltfWriter& out) {

@@ -46,7 +46,7 @@ def stamp(file):
 
 
 def is_killed(run, state, delay, wait_for_state):
-    """Kills a run `delay` seconds after its start or its first checkpoint, unless it ends before."""
+    """Kills a run `delay` seconds after its start or first checkpoint, unless it ends before."""
     old = stamp(state)
     while wait_for_state and run.poll() is None and stamp(state) in (None, old):
         time.sleep(0.002)

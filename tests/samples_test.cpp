@@ -68,11 +68,11 @@ Drawn draw_often(Device device, const Sampler& sampler) {
     const reference::LightProbability probability = checks_of(sampler).light_probability;
     for (std::size_t item = 0; item < item_count(tiles); ++item)
         for (uint y = 0; y < lights; ++y)
-            out.expected.push_back(
-                out.surfaces[item].position.w < 0
-                    ? 0
-                    : probability(tables.view(tree), {s.scene, s.camera, out.surfaces[item]}, item,
-                                  y));
+            out.expected.push_back(out.surfaces[item].position.w < 0
+                                       ? 0
+                                       : probability(tables.view(tree),
+                                                     {s.scene, s.camera, out.surfaces[item]}, item,
+                                                     y));
     Estimates estimates{device.allocate<float4>(item_count(tiles)),
                         device.allocate<float4>(item_count(tiles))};
     for (uint i = 0; i < draws; ++i) {

@@ -3,6 +3,8 @@
 
 #include <unistd.h>
 
+#include <boost/math/distributions/chi_squared.hpp>
+#include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 #include <filesystem>
 
@@ -124,27 +126,6 @@ struct Folder {
     }
 };
 
-// The regularised incomplete beta function, by its continued fraction (Abramowitz and Stegun,
-// 26.5.8, evaluated as Lentz does).
-double incomplete_beta(double a, double b, double x) {
-    const double front = std::exp(std::lgamma(a + b) - std::lgamma(a) - std::lgamma(b) +
-                                  a * std::log(x) + b * std::log1p(-x));
-    if (x > (a + 1) / (a + b + 2)) return 1 - incomplete_beta(b, a, 1 - x);
-    double c = 1;
-    double d = 1 / (1 - (a + b) * x / (a + 1));
-    double f = d;
-    for (int m = 1; m < 300; ++m) {
-        for (const bool even : {true, false}) {
-            const double n = even ? m * (b - m) * x / ((a + 2 * m - 1) * (a + 2 * m))
-                                  : -(a + m) * (a + b + m) * x / ((a + 2 * m) * (a + 2 * m + 1));
-            d = 1 / (1 + n * d);
-            c = 1 + n / c;
-            f *= c * d;
-        }
-    }
-    return front * f / a;
-}
-
 }  // namespace
 
 const std::vector<Device>& devices() {
@@ -234,13 +215,11 @@ FrameResult render(const Device& device, const TestScene& scene, RenderOptions o
 }
 
 double chi_squared_tail(double x, double k) {
-    const double z = (std::cbrt(x / k) - (1 - 2 / (9 * k))) / std::sqrt(2 / (9 * k));
-    return std::erfc(z / std::sqrt(2.0)) / 2;
+    return cdf(complement(boost::math::chi_squared(k), x));
 }
 
 double student_tail(double t, double k) {
-    if (t == 0) return 1;
-    return incomplete_beta(k / 2, 0.5, k / (k + t * t));
+    return 2 * cdf(complement(boost::math::students_t(k), std::abs(t)));
 }
 
 }  // namespace manylight::test

@@ -56,11 +56,10 @@ void expect_pass(const Check& check);
 /// A path for a file of this test process that is removed at its end.
 [[nodiscard]] std::string temporary(const std::string& name);
 
-/// The probability that a chi-squared variable of k degrees of freedom exceeds x (Wilson and
-/// Hilferty's approximation, good to a few percent of the probability down to 1e-6).
+/// The probability that a chi-squared variable of k > 0 degrees of freedom exceeds x, at least 0.
 [[nodiscard]] double chi_squared_tail(double x, double k);
 
-/// The two-sided probability that Student's t with k degrees of freedom exceeds |t| in size.
+/// The two-sided probability that Student's t with k > 0 degrees of freedom exceeds |t| in size.
 [[nodiscard]] double student_tail(double t, double k);
 
 /// Runs a test body for every device, naming the device in failures.

@@ -3,9 +3,9 @@
 // precision decides little.
 #include "device/kernel_sources.hpp"
 #include "support.hpp"
+#include "verify/sampler_checks.hpp"
 #include "verify/scene_maker.hpp"
 #include "verify/scenes.hpp"
-#include "verify/sampler_checks.hpp"
 #include "verify/verify_all.hpp"
 
 namespace manylight {

@@ -9,8 +9,8 @@
 
 namespace manylight {
 
-/// Every file below host/chart/report/, and the plotting library as library.js, by its path; made by
-/// cmake/embed.cmake.
+/// Every file below host/chart/report/, and the plotting library as library.js, by its path; made
+/// by cmake/embed.cmake.
 extern const std::map<std::string_view, std::string_view> report_sources;
 
 /// report.html: one page that holds everything it shows. `chart`: chart.json.

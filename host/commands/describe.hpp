@@ -12,8 +12,8 @@ namespace manylight {
 /// "point light 'lamp'", or its number where the file gives it no name: "quad light 12".
 [[nodiscard]] std::string name_of(const Scene& scene, std::size_t light);
 
-/// Where a light is in the file's frame, "(1.00, 2.00, 3.00)" in metres, or where a directional one comes from. Of an
-/// area, its centroid.
+/// Where a light is in the file's frame, "(1.00, 2.00, 3.00)" in metres, or where a directional one
+/// comes from. Of an area, its centroid.
 [[nodiscard]] std::string place_of(const Scene& scene, std::size_t light);
 
 /// light (its number), name, kind, position or direction (towards the light).

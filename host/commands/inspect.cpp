@@ -174,8 +174,9 @@ void print(const Inspected& in, std::size_t rows) {
         facing += n.facing;
         seen += n.seen;
     }
-    say("surface: {}, normal {}, {:.2f} m from the camera\n", show(scene.in_file(r.surface.position)),
-        show(glm::vec3(r.surface.normal)), r.surface.position.w);
+    say("surface: {}, normal {}, {:.2f} m from the camera\n",
+        show(scene.in_file(r.surface.position)), show(glm::vec3(r.surface.normal)),
+        r.surface.position.w);
     say("         {}\n", material_text(scene, r));
     say("lights:  of {}, {} face it, and it sees {} of those\n", scene.lights.size(), facing, seen);
     say("tile {}: a cut of {} nodes, of which {} are one light and {} are groups; refined to {} "
@@ -217,8 +218,7 @@ json to_json(const Inspected& in, std::size_t rows) {
         const LightNode& node = in.node(n);
         json entry = node.count == 1 ? describe(in.loaded.scene, in.light(n)) : json::object();
         if (node.count > 1)
-            entry[NODE_IS_INFINITE(node) ? "direction" : "position"] =
-                vector_json(in.centre(node));
+            entry[NODE_IS_INFINITE(node) ? "direction" : "position"] = vector_json(in.centre(node));
         entry.update({{"node", n.node},
                       {"lights", node.count},
                       {"lights_facing", n.facing},

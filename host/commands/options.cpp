@@ -348,8 +348,9 @@ void add_render(CLI::App& app, std::function<int()>& run) {
                      "seconds to render in, all work from start to written files counted")
         ->check(number(0.001, 1e9));
     command
-        ->add_option("--target-error", o.target_error,
-                     "render until the estimated relMSE, with its margin of error, is no more than this")
+        ->add_option(
+            "--target-error", o.target_error,
+            "render until the estimated relMSE, with its margin of error, is no more than this")
         ->check(number(1e-12, 1e12));
     command->add_option("--seed", o.seed, "same seed, same image")
         ->check(whole(0, largest_uint))

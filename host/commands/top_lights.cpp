@@ -36,8 +36,8 @@ nlohmann::json report_top_lights(const LoadedScene& loaded, unsigned count, uint
         const TopLight& top = found.lights[i];
         sum += top.share;
         say("{:>3}  {:<26} {:<28} {:>6.2f}% +- {:>5.2f}% {:>11.1f}%\n", i + 1,
-            name_of(loaded.scene, top.light), place_of(loaded.scene, top.light),
-            100 * top.share, 100 * top.standard_error, 100 * top.seen);
+            name_of(loaded.scene, top.light), place_of(loaded.scene, top.light), 100 * top.share,
+            100 * top.standard_error, 100 * top.seen);
     }
     const std::string how =
         found.light_samples == 0

@@ -146,8 +146,8 @@ void Kernel::launch(std::size_t items, const Arguments& arguments) {
             const Built::Parameter& parameter = built_->parameters[i];
             const auto found = arguments.values_.find(parameter.name);
             if (found == arguments.values_.end())
-                throw std::logic_error(fmt::format("kernel {} needs an argument '{}'", built_->name,
-                                                   parameter.name));
+                throw std::logic_error(
+                    fmt::format("kernel {} needs an argument '{}'", built_->name, parameter.name));
             const auto& [content, type] = found->second;
             const auto* memory = std::get_if<DeviceMemory>(&content);
             if (!takes(parameter.type, *type, memory != nullptr))

@@ -18,8 +18,8 @@ void check_output(const std::string& option, const std::string& path,
 
 /// Writes a whole file: to a name of its own beside the target, flushed to the disk, then renamed,
 /// so that an older file stays whole until the new one is. A symbolic link keeps leading to it.
-/// Throws RuntimeError, and leaves nothing behind, where that fails or an interrupt ends the process.
-/// One thread at a time.
+/// Throws RuntimeError, and leaves nothing behind, where that fails or an interrupt ends the
+/// process. One thread at a time.
 void write_file(const std::string& path, std::span<const std::byte> bytes);
 
 }  // namespace manylight

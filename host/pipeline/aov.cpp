@@ -10,7 +10,9 @@ void copy(const float4& v, float* out) {
     for (int c = 0; c < 3; ++c) out[c] = v[c];
 }
 
-const RowSum& total(const BatchFacts& f, std::size_t item) { return f.clusters.totals[f.clusters.rows[item]]; }
+const RowSum& total(const BatchFacts& f, std::size_t item) {
+    return f.clusters.totals[f.clusters.rows[item]];
+}
 
 void normal(const BatchFacts& f, std::size_t item, float* out) {
     if (hit(f, item)) copy(f.surfaces[item].normal, out);
@@ -58,7 +60,11 @@ const std::vector<Aov>& all_aovs() {
          "shading normal, world space; like all layers 0 where nothing is hit",
          normal},
         {"depth", {"depth.Z"}, false, "distance from the camera, m", depth},
-        {"position", {"position.X", "position.Y", "position.Z"}, false, "in the file's frame, m", position},
+        {"position",
+         {"position.X", "position.Y", "position.Z"},
+         false,
+         "in the file's frame, m",
+         position},
         {"albedo", {"albedo.R", "albedo.G", "albedo.B"}, false, "base colour", albedo},
         {"cluster", {"cluster.Y"}, true, "number of the pixel's cluster", cluster},
         {"representative",

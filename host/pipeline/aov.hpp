@@ -13,10 +13,10 @@ namespace manylight {
 
 /// What a batch of tiles knows of its pixels, on the host.
 struct BatchFacts {
-    glm::dvec3 origin;                // Scene::origin
-    std::vector<Material> materials;  // by Surface::shading
-    std::vector<Surface> surfaces;    // [item], at the pixels' centres
-    ClusterFacts clusters;            // empty where nothing was clustered, as below
+    glm::dvec3 origin;                 // Scene::origin
+    std::vector<Material> materials;   // by Surface::shading
+    std::vector<Surface> surfaces;     // [item], at the pixels' centres
+    ClusterFacts clusters;             // empty where nothing was clustered, as below
     std::vector<std::size_t> numbers;  // [region] number of the leaf in the whole image
 };
 

@@ -117,9 +117,9 @@ void Frame::prepare() {
     if (!options_.reflections) uploaded.shading["HAS_REFLECTIONS"] = 0;
     stages_ = std::make_shared<Stages>(device_, uploaded, pixels, options_.estimates_error());
     Stages& s = *stages_;
-    s.sampler = sampler_.make({device_, s.scene, scene_.lights, plan_.tiles_per_batch,
-                               options_.tile_size(), options_.width, options_.most_samples(),
-                               options_.clusters});
+    s.sampler =
+        sampler_.make({device_, s.scene, scene_.lights, plan_.tiles_per_batch, options_.tile_size(),
+                       options_.width, options_.most_samples(), options_.clusters});
     if (uploaded.shading.at("HAS_REFLECTIONS") != 0) s.reflections.emplace(device_, s.scene);
     s.surfaces = device_.allocate<Surface>(items);
     if (plan_.centres) s.centres = two_surfaces ? device_.allocate<Surface>(items) : s.surfaces;
@@ -235,8 +235,8 @@ void Frame::report(Progress& progress, const Visit& visit, double work) const {
     double samples = 0;
     for (uint i = done_[visit.number]; i < visit.end && !visit.deadline; ++i)
         samples += std::max(samples_of(i), 1u);
-    double done =
-        work / (stages_->sampler->expected_begin_rays(visit.batch) + samples * static_cast<double>(item_count(visit.batch)));
+    double done = work / (stages_->sampler->expected_begin_rays(visit.batch) +
+                          samples * static_cast<double>(item_count(visit.batch)));
     if (visit.deadline)
         done = seconds_since(visit.begun) /
                std::chrono::duration<double>(*visit.deadline - visit.begun).count();
@@ -329,8 +329,8 @@ void Frame::sample(const Visit& visit, Progress& progress) {
             return !by_passes || !may_stop || seconds_left() > 0;
         };
         done_[visit.number] = i + 1;
-        const bool complete = count == 0 || s.sampler->draw(batch, sample, count, s.surfaces,
-                                                            s.estimates, sink);
+        const bool complete =
+            count == 0 || s.sampler->draw(batch, sample, count, s.surfaces, s.estimates, sink);
         if (!complete) {
             result_.is_cut_short = true;
             continue;

@@ -107,7 +107,7 @@ class Frame {
     const FrameState* state_ = nullptr;  // until the render has gone on with it
     uint resumed_end_ = 0;               // pixel samples that it was on the way to
     std::size_t clusters_before_ = 0;    // the batch in work
-    std::size_t begin_rays_ = 0;      
+    std::size_t begin_rays_ = 0;
     std::shared_ptr<Stages> stages_;
     FrameResult result_;
 };

@@ -82,7 +82,8 @@ class Truth {
     uint points_;
 };
 
-// The variance of the sum of what systematically drawn nodes add: node i is drawn
+// The variance of a sum over nodes drawn by systematic sampling: node i, with the expected number
+// of draws shares[i], adds values[i] each time and is drawn
 // floor(u + reached[i]) - floor(u + reached[i - 1]) times, u uniform in [0, 1).
 double systematic_variance(const std::vector<double>& shares, const std::vector<double>& values) {
     std::vector<double> reached(shares.size());
@@ -108,9 +109,12 @@ double systematic_variance(const std::vector<double>& shares, const std::vector<
     return std::max(square - mean * mean, 0.0);
 }
 
-// A node's part in the variance: that of its number of draws x the squared distance of what a draw
-// adds from the mean (Hajek, "Asymptotic Theory of Rejective Sampling with Varying Probabilities",
-// 1964), and what is within. The mean itself counts where the number of all draws varies.
+// Shares of the nodes in the pixel's variance, by Hajek's approximation for unequal inclusion
+// probabilities ("Asymptotic Theory of Rejective Sampling with Varying Probabilities", 1964). With
+// p the fraction of a node's expected number of draws, the inclusion probability of its last draw,
+// a node's variance is p (1 - p) (value - mean)^2 plus its variance within, that of drawing one of
+// its lights and a point on it; mean is the mean of all values, weighted by p (1 - p). The variance
+// of the number of all draws x mean^2 is count_noise.
 void set_noise(const std::vector<double>& shares, const std::vector<double>& values,
                const std::vector<double>& within, PixelReport& out) {
     const auto spread = [](double share) {

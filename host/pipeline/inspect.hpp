@@ -2,8 +2,8 @@
 // Why a pixel is noisy: what sampler adaptive knows there, beside what is true.
 #pragma once
 
-#include "samplers/adaptive/adaptive.hpp"
 #include "reference/tracing.hpp"
+#include "samplers/adaptive/adaptive.hpp"
 
 namespace manylight {
 

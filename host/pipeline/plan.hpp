@@ -43,7 +43,7 @@ struct RenderOptions {
     /// Whether the error is estimated.
     [[nodiscard]] bool estimates_error() const;
 
-    /// Pixels of a tile's side: of the clusters, where the sampler leaves it open.
+    /// Side of a tile in pixels: the sampler's, or clusters.tile_size where the sampler has none.
     [[nodiscard]] unsigned tile_size() const;
 
     /// Whether pixel samples lie at random in their pixels.
@@ -54,8 +54,8 @@ struct RenderOptions {
 struct Plan {
     std::size_t scene_bytes = 0;
     std::size_t image_bytes = 0;
-    std::size_t batch_bytes = 0;   // of everything that is kept for a batch of tiles
-    std::size_t matrix_bytes = 0;  // of contributions and CDFs, whether of a batch or not
+    std::size_t batch_bytes = 0;   // of all buffers of a batch of tiles
+    std::size_t matrix_bytes = 0;  // of contributions and CDFs; with clusters in batch_bytes
     unsigned batches = 0;
     unsigned tiles_per_batch = 0;
     bool clusters = false;  // whether pixels are clustered

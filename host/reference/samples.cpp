@@ -150,8 +150,7 @@ double probability_contribution(const Tables& tables, const Point& point, std::s
 // The product of the choices on the way down to the light's leaf.
 double probability_lighttree(const Tables& tables, const Point& point, std::size_t, uint light) {
     const LightTree& tree = *tables.tree;
-    const auto place = static_cast<uint>(
-        std::ranges::find(tree.order, light) - tree.order.begin());
+    const auto place = static_cast<uint>(std::ranges::find(tree.order, light) - tree.order.begin());
     double probability = 1;
     std::size_t at = 0;
     for (bool root = tree.roots.size() > 1; root || tree.nodes[at].count > 1; root = false) {

@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
+#include "reference/samples.hpp"
 #include "samplers/contribution/clustering.hpp"
 #include "samplers/table.hpp"
-#include "reference/samples.hpp"
 #include "stages/gbuffer.hpp"
 
 namespace manylight {

@@ -28,8 +28,8 @@ Check Verifier::pdf(std::string_view sampler, const Shares& shares, bool cluster
     Matrix matrix(device_, rows, static_cast<uint>(lights));
     const std::vector<float> values =
         clustered ? std::vector<float>(matrix_.begin(),
-                                      matrix_.begin() + static_cast<std::ptrdiff_t>(rows * lights))
-                 : std::vector<float>(lights, 0.0f);
+                                       matrix_.begin() + static_cast<std::ptrdiff_t>(rows * lights))
+                  : std::vector<float>(lights, 0.0f);
     std::vector<uint> words(values.size());
     std::memcpy(words.data(), values.data(), values.size() * sizeof(float));
     matrix.values.upload(words);

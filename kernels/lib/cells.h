@@ -20,7 +20,8 @@ static uint pass_item(Pass pass, uint p) {
 // The LANES pixels from LANES * group on are drawn together: the same place of as many cells.
 static uint pass_groups(Pass pass) { return pass.tile_count * 4u * pass.count * (16u / LANES); }
 
-// Of a group, its first pixel's cell in the quadrant, and the quadrant in the run.
+// The cell of a group's first pixel, 0 to 15 in its quadrant, and that quadrant's number in the
+// pass's run of tiles.
 static uint group_cell(uint group) { return LANES * group % 16u; }
 static uint group_quadrant(Pass pass, uint group) { return LANES * group / 16u / pass.count; }
 
@@ -28,16 +29,16 @@ static uint group_quadrant(Pass pass, uint group) { return LANES * group / 16u /
 #define DRAWN_SLOT(entry) ((entry) >> 24)
 #define DRAWN_NODE(entry) ((entry)&0x7fffffu)
 
-// Where a ray would end that there is none of, since what is drawn does not shine there: it says of
-// the node what an occluded ray says.
+// The end of a draw's ray where no ray was traced, since the drawn light contributes nothing to the
+// pixel. Such a draw counts as an occluded ray in the node's visibility.
 #define DARK -2.0f
 
 // What the draws of a group hold, by rows of 16: draws[DRAW_ROW(...) + draw % 16]. The group's
 // packets begin at group_packets().
 #define DRAW_ENTRY 0u    // the drawn node
 #define DRAW_LANE 1u     // lane; its how manieth draw << 4; which of `times` << 13; times << 22
-#define DRAW_SHARE 2u    // float: how often the pixel draws the node on average
-#define DRAW_CONTROL 3u  // float: what of the node's estimate the control variate loses
+#define DRAW_SHARE 2u    // float: the node's expected number of draws in the pixel
+#define DRAW_CONTROL 3u  // float: this x the node's estimate is the control variate per draw
 #define DRAW_ROW(pass, group, draw, row) \
     (64ul * (group_packets(pass, group) + (draw) / 16u) + 16u * (row))
 

@@ -39,7 +39,8 @@ typedef struct Pass {
 } Pass;
 SHARED_SIZE(Pass, 24)
 
-/// What is taken for granted before any ray: a share of rays that pass, worth one ray.
+/// The prior of a tile's visibility, the share of its shadow rays that pass; it weighs as much as
+/// one ray.
 #define PRIOR_SHARE 0.7f
 
 /// How many draws the pixels of a pass get.
@@ -50,15 +51,15 @@ typedef struct Budget {
 } Budget;
 SHARED_SIZE(Budget, 12)
 
-/// The share of what is thought to be visible that is taken from the nodes' estimates rather than
-/// from shadow rays: a control variate.
+/// The control variate of a node is CONTROL x V^ x its estimated contribution: it is added for all
+/// nodes and subtracted from those drawn, so that shadow rays only correct it.
 #define CONTROL 0.8f
 
 /// A pixel's draws are between these, times the average.
 #define FEWEST_DRAWS 0.25f
 #define MOST_DRAWS 8.0f
 
-/// What a pixel's draws are expected to be like.
+/// Variance and expected value of a pixel's draws.
 typedef struct Expectation {
     float variance;   // of the luminance, for one draw, (cd/m2)^2
     float luminance;  // cd/m2

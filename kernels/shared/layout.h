@@ -17,7 +17,7 @@
 // clang-format off
 #define SHARED_FIELDS(X)                                                                           \
     X(Camera, origin) X(Camera, right) X(Camera, up) X(Camera, forward)                            \
-    X(Surface, position) X(Surface, normal) X(Surface, horizon) X(Surface, triangle)             \
+    X(Surface, position) X(Surface, normal) X(Surface, horizon) X(Surface, triangle)               \
     X(Surface, material) X(Surface, front) X(Surface, shading)                                     \
     X(Texture, first) X(Texture, width) X(Texture, height) X(Texture, levels) X(Texture, format)   \
     X(Texture, wrap_u) X(Texture, wrap_v) X(Texture, magnified_linear)                             \
@@ -25,11 +25,11 @@
     X(TextureMap, u) X(TextureMap, v) X(TextureMap, texture) X(TextureMap, set)                    \
     X(TextureMap, scale)                                                                           \
     X(Material, base_color) X(Material, emission) X(Material, roughness) X(Material, specular)     \
-    X(Material, reflectance) X(Material, alpha) X(Material, cutoff) X(Material, unlit)              \
+    X(Material, reflectance) X(Material, alpha) X(Material, cutoff) X(Material, unlit)             \
     X(Material, culled)                                                                            \
     X(AlphaTriangle, first) X(AlphaTriangle, second) X(AlphaTriangle, alphas)                      \
     X(AlphaTriangle, texture) X(AlphaTriangle, culled)                                             \
-    X(Instance, to_world) X(Instance, to_object) X(Instance, first) X(Instance, stored)              \
+    X(Instance, to_world) X(Instance, to_object) X(Instance, first) X(Instance, stored)            \
     X(Instance, mesh) X(Instance, mirrored) X(Instance, root)                                      \
     X(Light, position) X(Light, axis) X(Light, edge) X(Light, emission)                            \
     X(Tiles, width) X(Tiles, height) X(Tiles, size) X(Tiles, columns) X(Tiles, first)              \
@@ -39,8 +39,10 @@
     X(RowSum, visible) X(RowSum, unshadowed) X(RowSum, visible_count) X(RowSum, facing_count)      \
     X(LightNode, centre) X(LightNode, axis) X(LightNode, intensity) X(LightNode, lower)            \
     X(LightNode, upper) X(LightNode, cone) X(LightNode, first) X(LightNode, count)                 \
-    X(LightNode, reach) X(LightNode, kind) X(Trials, traced) X(Trials, passed)                  \
-    X(Pass, first) X(Pass, count) X(Pass, number) X(Pass, first_tile) X(Pass, tile_count) X(Pass, packets) X(Budget, samples) X(Budget, factor) X(Budget, exposure) X(Expectation, variance) X(Expectation, luminance)                                                 \
+    X(LightNode, reach) X(LightNode, kind) X(Trials, traced) X(Trials, passed)                     \
+    X(Pass, first) X(Pass, count) X(Pass, number) X(Pass, first_tile) X(Pass, tile_count)          \
+    X(Pass, packets) X(Budget, samples) X(Budget, factor) X(Budget, exposure)                      \
+    X(Expectation, variance) X(Expectation, luminance)                                             \
     X(Mixture, visible) X(Mixture, unshadowed) X(Mixture, power) X(Mixture, total_power)
 // clang-format on
 

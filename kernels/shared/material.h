@@ -14,17 +14,17 @@ typedef struct Material {
                          // only where it is still to be multiplied by a texture
     float roughness;     // GGX alpha, at least SMALLEST_ALPHA
     float specular;      // 0 to 1; a material with metallic and specular 0 is Lambert's
-    float alpha;         // 0 to 1: how much of it is there
-    float cutoff;        // above 0: it is there where alpha is not below; below 0: as much as alpha
-                         // says; 0: all of it is there
+    float alpha;         // 0 to 1: coverage
+    float cutoff;        // above 0: glTF's alpha cutoff, coverage is 1 where alpha reaches it, else
+                         // 0 (MASK); below 0: coverage is alpha (BLEND); 0: it is 1 (OPAQUE)
     uint unlit;          // 1: the emission is its colour and gives no light
-    uint culled;         // 1: it is not there for rays that meet its back
+    uint culled;         // 1: rays pass through its back
     uint padding1;
     uint padding2;
 } Material;
 SHARED_SIZE(Material, 80)
 
-/// Of a dielectric with the index of refraction 1.5.
+/// Reflectance at normal incidence of a dielectric with the index of refraction 1.5.
 #define USUAL_REFLECTANCE 0.04f
 
 /// Below this GGX alpha, single precision cannot resolve the lobe (1 - cos of its width is 1e-6).

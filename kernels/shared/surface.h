@@ -8,16 +8,16 @@ SHARED_BEGIN
 
 /// What a primary ray hit: one entry of the G-buffer, world space, metres.
 typedef struct Surface {
-    float4 position;   // xyz; w: distance from the ray's origin, negative where the ray missed
-    float4 normal;     // xyz: unit shading normal on the viewer's side
-    float4 horizon;    // xyz: unit normal on the viewer's side of the plane below which no light
-                       // shines: the triangle's, or the vertices' where that is lifted;
-                       // w: distance along it at which shadow rays start (see LEAST_LIFT)
-    uint triangle;     // index in Scene::indices / 3, or an instance's
-    uint material;     // index in Scene::materials
-    uint front;        // 1 where the viewer is on the side that the triangle's winding faces
-    uint shading;      // index of what it shades with, on the device: `material`, or behind the
-                       // scene's materials one of its own where textures or colours vary it
+    float4 position;  // xyz; w: distance from the ray's origin, negative where the ray missed
+    float4 normal;    // xyz: unit shading normal on the viewer's side
+    float4 horizon;   // xyz: unit normal on the viewer's side of the plane below which no light
+                      // shines: the triangle's, or the vertices' where that is lifted;
+                      // w: distance along it at which shadow rays start (see LEAST_LIFT)
+    uint triangle;    // index in Scene::indices / 3, or an instance's
+    uint material;    // index in Scene::materials
+    uint front;       // 1 where the viewer is on the side that the triangle's winding faces
+    uint shading;     // index of what it shades with, on the device: `material`, or behind the
+                      // scene's materials one of its own where textures or colours vary it
 } Surface;
 SHARED_SIZE(Surface, 64)
 

@@ -197,17 +197,17 @@ void Adaptive::set_budget(const std::vector<Expectation>& pixels) {
 }
 
 Sampler sampler_adaptive() {
-    return {.name = "adaptive",
-            .summary =
-                "by contribution and learned visibility, from a cut of the light tree per tile",
-            .tree = true,
-            .learns = true,
-            .tile_size = ADAPTIVE_TILE,
-            .most_lights = std::size_t{1} << 22,  // draws have 23 bits for a node
-            .footprint = Adaptive::footprint,
-            .make = [](const SamplerContext& context) -> std::unique_ptr<LightSampler> {
-                return std::make_unique<Adaptive>(context);
-            }};
+    return {
+        .name = "adaptive",
+        .summary = "by contribution and learned visibility, from a cut of the light tree per tile",
+        .tree = true,
+        .learns = true,
+        .tile_size = ADAPTIVE_TILE,
+        .most_lights = std::size_t{1} << 22,  // draws have 23 bits for a node
+        .footprint = Adaptive::footprint,
+        .make = [](const SamplerContext& context) -> std::unique_ptr<LightSampler> {
+            return std::make_unique<Adaptive>(context);
+        }};
 }
 
 }  // namespace manylight

@@ -20,8 +20,10 @@ AdaptiveStage::AdaptiveStage(Device& device, const DeviceScene& scene, std::size
     Defines defines = scene.shading;
     defines["LANES"] = static_cast<int>(lanes_);
     draw_ = device.kernel("samplers/adaptive/adaptive.cl", "adaptive_draw", defines, "weights");
-    aim_ = device.kernel("samplers/adaptive/adaptive_samples.cl", "adaptive_aim", defines, "samples");
-    add_ = device.kernel("samplers/adaptive/adaptive_samples.cl", "adaptive_add", defines, "samples");
+    aim_ =
+        device.kernel("samplers/adaptive/adaptive_samples.cl", "adaptive_aim", defines, "samples");
+    add_ =
+        device.kernel("samplers/adaptive/adaptive_samples.cl", "adaptive_add", defines, "samples");
 }
 
 Arguments AdaptiveStage::draws() const {

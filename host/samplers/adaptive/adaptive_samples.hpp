@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "stages/samples.hpp"
 #include "samplers/adaptive/visibility.hpp"
+#include "stages/samples.hpp"
 
 namespace manylight {
 

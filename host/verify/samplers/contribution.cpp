@@ -13,12 +13,12 @@ SamplerChecks checks_contribution() {
 }
 
 SamplerChecks checks_contribution_defensive() {
-    return {.choose_light = reference::choose_contribution,
-            .light_probability = reference::probability_contribution,
-            .run = [](Verifier& verifier, const Sampler& sampler) -> std::vector<Check> {
-                return {verifier.pdf(sampler.name, defensive_shares, true),
-                        verifier.samples(sampler)};
-            }};
+    return {
+        .choose_light = reference::choose_contribution,
+        .light_probability = reference::probability_contribution,
+        .run = [](Verifier& verifier, const Sampler& sampler) -> std::vector<Check> {
+            return {verifier.pdf(sampler.name, defensive_shares, true), verifier.samples(sampler)};
+        }};
 }
 
 }  // namespace manylight

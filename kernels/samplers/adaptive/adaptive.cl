@@ -11,10 +11,11 @@
 #include "lib/node_estimate.h"
 #include "lib/receivers_n.h"
 
-// A node of several lights is expected to contribute as estimated, within a standard deviation of
-// the root of this, relative: its lights differ.
+// Relative variance of the contribution of a light drawn from a node of several lights, divided by
+// its probability: the lights of a node differ.
 #define GROUP_VARIANCE 0.5f
-// The same for what is known of V^ and of areas, for a whole pixel.
+// Relative variance of a pixel's whole estimate, by the errors of V^ and by the points on lights
+// with area.
 #define PIXEL_VARIANCE 0.004f
 // A node is replaced by its children where its weight times its angular size exceeds this share of
 // the weight of one draw.
@@ -31,8 +32,12 @@ static uint node_entry(__global const LightNode* nodes, uint node, uint slot) {
     return (slot << 24) | node | (point ? SINGLE_POINT : 0u);
 }
 
-// A node's contribution and its weight: the root of the mean square of what a shadow ray says of
-// the contribution's luminance, less the control variate.
+// A node's estimated contribution C and its weight, C's luminance x sqrt(V (1 + s - k (2 - k) V)):
+// V is V^, s the variance of C (GROUP_VARIANCE, or 0 for one light), k is CONTROL.
+// A draw adds x C' - k V C, over its expected number: the ray passes (x = 1) with probability V,
+// and C' has the expected value C and the relative variance s. Its mean square is
+//     E[x C'^2] - 2 k V C E[x C'] + (k V C)^2 = C^2 (V (1 + s) - 2 k V^2 + k^2 V^2),
+// and the variance of a sum of such terms is least where its draws follow the mean square's root.
 typedef struct Weighed {
     Color_n color;
     float_n weight;
@@ -193,8 +198,9 @@ static void find_weights(Weights* w, Source* s, float samples) {
     }
 }
 
-// What one draw is expected to be like. Its mean square is the square of the weights' sum, its mean
-// what the control variate leaves of the brightness.
+// Variance of one draw, and the pixel's expected brightness. The draw's mean square is the square
+// of the weights' sum; its expected value is brightness x (1 - CONTROL), the rest being the control
+// variate.
 INLINE void expect(const Weights* w, float_n* variance, float_n* brightness) {
     *brightness = color_luminance_n(w->control);
     const float known = (1.0f - CONTROL) * (1.0f - CONTROL) - PIXEL_VARIANCE;

@@ -181,7 +181,7 @@ INLINE float_n shrink_n(float_n traced, float_n passed, float_n towards) {
     return (passed + PARENT_RAYS * towards) * inverse_n(traced + PARENT_RAYS);
 }
 
-// The rays of a part of a tile to all slots, and how many of them were expected to pass.
+// The rays from a part of a tile to all slots: traced, passed, and expected to pass.
 typedef struct Outcome {
     float_n traced, passed, expected;
 } Outcome;
@@ -192,12 +192,12 @@ INLINE void add_outcome(Outcome* sum, float_n traced, float_n passed, float_n sh
     sum->expected = fma(traced, share, sum->expected);
 }
 
-// What is taken for granted about a part of a tile: that it sees as much as expected, worth one ray
-// that passed and one that did not.
+// The prior of a part of a tile: as many rays pass as expected. It weighs as much as one passed and
+// one stopped ray.
 #define SIGHT_RAYS 1.0f
 
-// How the odds of all slots change by what the part of the tile sees more or less of them than was
-// expected: lights are often hidden together.
+// Ratios of observed to expected rays, passed and stopped, of all slots in a part of a tile. They
+// scale the odds of every slot's visibility there, since lights are often hidden together.
 typedef struct Odds {
     float_n passed, stopped;
 } Odds;
@@ -215,9 +215,10 @@ INLINE float_n adjust(Odds odds, float_n share) {
     return yes * inverse_n(fma(1.0f - share, odds.stopped, yes));
 }
 
-// visible[...] = V^ of every cell: from the tile's mean to the mean of GROUP slots, the slot, and
-// then of 16 x 16, 8 x 8 and 4 x 4 pixels: each shrinks towards the one before, adjusted to what
-// the part sees of all slots. Of tile_count tiles from first_tile on; visible[] holds these alone.
+// visible[...] = V^ of every cell, by shrinkage down a hierarchy: the tile, GROUP slots, the slot,
+// then the slot from 16 x 16, 8 x 8 and 4 x 4 pixels. The prior of each level is the estimate of
+// the one above, its odds adjusted to the part's rays to all slots (Odds). Of tile_count tiles from
+// first_tile on; visible[] holds these alone.
 // LANES cells of a quadrant (16 x 16 pixels) per work-item.
 KERNEL void visibility_estimate(uint first_tile, uint tile_count, __global const uint* cut_sizes,
                                 __global const Trials* shared, __global const uint* counts,
