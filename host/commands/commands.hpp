@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the program's subcommands do; options.cpp parses their arguments.
+// What the program's subcommands do; options/ parses their arguments.
 #pragma once
 
 #include <map>
