@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Closest hits alone, for manylight bench and for tests; rays as in lib/rays.h.
-#include "lib/packet.h"
+#include "lib/trace_packet.h"
 #include "lib/rays.h"
 
 // Beyond starts[16 * packet + lane]. triangles[16 * packet + lane], ~0 where nothing is hit; where
