@@ -7,6 +7,52 @@
 
 #if LANES > 1
 
+// Ends the rays that hit a leaf's triangles, at -1, those of a set and maybe others; returns which.
+static uint occlude_in_leaf(__global const float_k* bvh_blocks, int entry, Packet* p,
+                            uint mask ALPHA_PARAMETERS) {
+    uint ended = 0u;
+    __global const float_k* rows = bvh_blocks + (~entry >> 4) * BLOCK_ROWS;
+    const PreparedBlock block = prepare_block(rows, p->origin);
+#if HAS_ALPHA
+    __global const uint* names = (__global const uint*)(rows + 9);
+#endif
+    const uint triangles = (uint)(~entry & 15) + 1u;
+    if (popcount(mask) < PARTS * triangles) {
+        for (uint rays = mask; rays; rays &= rays - 1u) {
+            const uint lane = lowest(rays);
+            uint found = lanes_k(hit_block(&block, direction_of(p, lane), LANE(p->size, lane),
+                                           LANE(p->end, lane), true)
+                                     .hit);
+#if HAS_ALPHA
+            for (; found; found &= found - 1u) {
+                const uint t = lowest(found);
+                if (is_there_for(p, lane, &block, t, names[t],
+                                 names[t] + p->renumber ALPHA_ARGUMENTS))
+                    break;
+            }
+#endif
+            if (!found) continue;
+            ended |= 1u << lane;
+            SET_LANE(p->end, lane, -1.0f);
+        }
+    } else {
+        for (uint triangle = 0u; triangle < triangles && (mask & ~ended); ++triangle)
+            for (uint part = 0u; part < PARTS; ++part) {
+                if (PARTS > 1 && !PART_OF(mask & ~ended, part)) continue;
+                int_n hit = hit_triangle(&block, triangle, p, part, true).hit;
+#if HAS_ALPHA
+                hit = there_for_all(p, part, hit, &block, triangle, names[triangle],
+                                    names[triangle] + p->renumber ALPHA_ARGUMENTS);
+#endif
+                const uint rays = lanes_n(hit);
+                if (!rays) continue;
+                ended |= rays << (LANES * part);
+                p->end[part] = select(p->end[part], (float_n)(-1.0f), hit);
+            }
+    }
+    return ended;
+}
+
 // Ends the rays that hit something, at -1; returns whether any did.
 static bool occlude_packet(BVH_PARAMETERS, Packet* p) {
     int stack[BVH_STACK];
@@ -43,45 +89,7 @@ static bool occlude_packet(BVH_PARAMETERS, Packet* p) {
         }
 #endif
         if (entry < 0) {
-            __global const float_k* rows = bvh_blocks + (~entry >> 4) * BLOCK_ROWS;
-            const PreparedBlock block = prepare_block(rows, p->origin);
-#if HAS_ALPHA
-            __global const uint* names = (__global const uint*)(rows + 9);
-#endif
-            const uint triangles = (uint)(~entry & 15) + 1u;
-            if (popcount(mask) < PARTS * triangles) {
-                for (uint rays = mask; rays; rays &= rays - 1u) {
-                    const uint lane = lowest(rays);
-                    uint found = lanes_k(hit_block(&block, direction_of(p, lane),
-                                                   LANE(p->size, lane), LANE(p->end, lane), true)
-                                             .hit);
-#if HAS_ALPHA
-                    for (; found; found &= found - 1u) {
-                        const uint t = lowest(found);
-                        if (is_there_for(p, lane, &block, t, names[t],
-                                         names[t] + p->renumber ALPHA_ARGUMENTS))
-                            break;
-                    }
-#endif
-                    if (!found) continue;
-                    live &= ~(1u << lane);
-                    SET_LANE(p->end, lane, -1.0f);
-                }
-            } else {
-                for (uint triangle = 0u; triangle < triangles && (mask & live); ++triangle)
-                    for (uint part = 0u; part < PARTS; ++part) {
-                        if (PARTS > 1 && !PART_OF(mask & live, part)) continue;
-                        int_n hit = hit_triangle(&block, triangle, p, part, true).hit;
-#if HAS_ALPHA
-                        hit = there_for_all(p, part, hit, &block, triangle, names[triangle],
-                                            names[triangle] + p->renumber ALPHA_ARGUMENTS);
-#endif
-                        const uint rays = lanes_n(hit);
-                        if (!rays) continue;
-                        live &= ~(rays << (LANES * part));
-                        p->end[part] = select(p->end[part], (float_n)(-1.0f), hit);
-                    }
-            }
+            live &= ~occlude_in_leaf(bvh_blocks, entry, p, mask ALPHA_ARGUMENTS);
             if (!live) break;
             continue;
         }
@@ -100,6 +108,58 @@ static bool occlude_packet(BVH_PARAMETERS, Packet* p) {
     leave_instance(p, world);
 #endif
     return live != all;
+}
+
+// Shortens the rays of a set to their closest hits among a leaf's triangles, as closest_hits()
+// does.
+static void hit_leaf(__global const float_k* bvh_blocks, int entry, Packet* p, uint mask,
+                     const float_n* starts, int_n* triangles ALPHA_PARAMETERS) {
+    __global const float_k* rows = bvh_blocks + (~entry >> 4) * BLOCK_ROWS;
+    __global const uint* names = (__global const uint*)(rows + 9);
+    const PreparedBlock block = prepare_block(rows, p->origin);
+    bool any_hit = false;
+    const uint all = (uint)(~entry & 15) + 1u;
+    if (popcount(mask) < PARTS * all) {
+        for (uint rays = mask; rays; rays &= rays - 1u) {
+            const uint lane = lowest(rays);
+            const BlockHits hits = hit_block(&block, direction_of(p, lane), LANE(p->size, lane),
+                                             LANE(p->end, lane), false);
+            const uint found = lanes_k(hits.hit);
+            if (!found) continue;
+            const float_k t = hits.t / hits.n;
+            for (uint lanes = found; lanes; lanes &= lanes - 1u) {
+                const uint triangle = lowest(lanes);
+                if (LANE(t, triangle) >= LANE(p->end, lane) ||
+                    LANE(t, triangle) <= ((const float*)starts)[lane])
+                    continue;
+#if HAS_ALPHA
+                if (!is_there_for(p, lane, &block, triangle, names[triangle],
+                                  names[triangle] + p->renumber ALPHA_ARGUMENTS))
+                    continue;
+#endif
+                SET_LANE(p->end, lane, LANE(t, triangle));
+                ((int*)triangles)[lane] = (int)(names[triangle] + p->renumber);
+                any_hit = true;
+            }
+        }
+    } else {
+        for (uint triangle = 0u; triangle < all; ++triangle)
+            for (uint part = 0u; part < PARTS; ++part) {
+                if (PARTS > 1 && !PART_OF(mask, part)) continue;
+                TriangleHits hits = hit_triangle(&block, triangle, p, part, false);
+                hits.hit &= hits.t > starts[part] * hits.n;
+#if HAS_ALPHA
+                hits.hit = there_for_all(p, part, hits.hit, &block, triangle, names[triangle],
+                                         names[triangle] + p->renumber ALPHA_ARGUMENTS);
+#endif
+                if (!lanes_n(hits.hit)) continue;
+                p->end[part] = select(p->end[part], hits.t / hits.n, hits.hit);
+                triangles[part] = select(triangles[part],
+                                         (int_n)((int)(names[triangle] + p->renumber)), hits.hit);
+                any_hit = true;
+            }
+    }
+    if (any_hit) p->furthest = last_end(p);
 }
 
 // Shortens every ray to its closest hit beyond `starts`, whose triangle `triangles` gets; ~0 where
@@ -140,55 +200,7 @@ INLINE void closest_hits(BVH_PARAMETERS, Packet* p, const float_n* starts, int_n
         }
 #endif
         if (entry < 0) {
-            __global const float_k* rows = bvh_blocks + (~entry >> 4) * BLOCK_ROWS;
-            __global const uint* names = (__global const uint*)(rows + 9);
-            const PreparedBlock block = prepare_block(rows, p->origin);
-            bool any_hit = false;
-            const uint all = (uint)(~entry & 15) + 1u;
-            if (popcount(mask) < PARTS * all) {
-                for (uint rays = mask; rays; rays &= rays - 1u) {
-                    const uint lane = lowest(rays);
-                    const BlockHits hits =
-                        hit_block(&block, direction_of(p, lane), LANE(p->size, lane),
-                                  LANE(p->end, lane), false);
-                    const uint found = lanes_k(hits.hit);
-                    if (!found) continue;
-                    const float_k t = hits.t / hits.n;
-                    for (uint lanes = found; lanes; lanes &= lanes - 1u) {
-                        const uint triangle = lowest(lanes);
-                        if (LANE(t, triangle) >= LANE(p->end, lane) ||
-                            LANE(t, triangle) <= ((const float*)starts)[lane])
-                            continue;
-#if HAS_ALPHA
-                        if (!is_there_for(p, lane, &block, triangle, names[triangle],
-                                          names[triangle] + p->renumber ALPHA_ARGUMENTS))
-                            continue;
-#endif
-                        SET_LANE(p->end, lane, LANE(t, triangle));
-                        ((int*)triangles)[lane] = (int)(names[triangle] + p->renumber);
-                        any_hit = true;
-                    }
-                }
-            } else {
-                for (uint triangle = 0u; triangle < all; ++triangle)
-                    for (uint part = 0u; part < PARTS; ++part) {
-                        if (PARTS > 1 && !PART_OF(mask, part)) continue;
-                        TriangleHits hits = hit_triangle(&block, triangle, p, part, false);
-                        hits.hit &= hits.t > starts[part] * hits.n;
-#if HAS_ALPHA
-                        hits.hit =
-                            there_for_all(p, part, hits.hit, &block, triangle, names[triangle],
-                                          names[triangle] + p->renumber ALPHA_ARGUMENTS);
-#endif
-                        if (!lanes_n(hits.hit)) continue;
-                        p->end[part] = select(p->end[part], hits.t / hits.n, hits.hit);
-                        triangles[part] =
-                            select(triangles[part], (int_n)((int)(names[triangle] + p->renumber)),
-                                   hits.hit);
-                        any_hit = true;
-                    }
-            }
-            if (any_hit) p->furthest = last_end(p);
+            hit_leaf(bvh_blocks, entry, p, mask, starts, triangles ALPHA_ARGUMENTS);
             continue;
         }
         __global const float_w* node = bvh_nodes + entry * 7;
