@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Closest hits alone, for manylight bench and for tests; rays as in lib/rays.h.
-#include "lib/packet.h"
 #include "lib/rays.h"
+#include "lib/trace_packet.h"
 
 // Beyond starts[16 * packet + lane]. triangles[16 * packet + lane], ~0 where nothing is hit; where
 // something is, the ray's end becomes the hit's t. One packet per work-item.

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Stage gbuffer: one primary ray per pixel of a run of tiles.
-#include "lib/packet.h"
 #include "lib/random.h"
 #include "lib/textures.h"
 #include "lib/tiles.h"
+#include "lib/trace_packet.h"
 #include "shared/camera.h"
 #include "shared/material.h"
 #include "shared/surface.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Stage shadows: finds the rays (lib/rays.h) that something is in the way of.
-#include "lib/packet.h"
 #include "lib/rays.h"
+#include "lib/trace_packet.h"
 
 // Where packets come in regions, only the first packet_counts[region] of each are in use.
 #if HAS_REGIONS

@@ -4,6 +4,7 @@ each sampler its relMSE over adaptive's in the time of adaptive's 16 light sampl
 """
 import json
 import pathlib
+import subprocess
 
 import matplotlib
 
@@ -13,9 +14,9 @@ import matplotlib.pyplot as plt
 FOLDER = pathlib.Path("build/charts")
 SETTING = (16, 1)  # light samples, pixel samples
 EXACT = 1e-9  # an error below this is rounding
-COLORS = {"adaptive": "#d62728", "lighttree": "#1f77b4", "ris": "#2ca02c", "power": "#9467bd",
-          "uniform": "#8c564b", "contribution": "#ff7f0e", "contribution-defensive": "#e377c2",
-          "exhaustive": "#444444"}
+COLORS = {sampler["name"]: sampler["color"] for sampler in json.loads(
+    subprocess.run(["build/manylight", "samplers", "--json"], check=True, capture_output=True,
+                   text=True).stdout)}
 
 
 def best_points(settings):

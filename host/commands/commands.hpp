@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the program's subcommands do; options.cpp parses their arguments.
+// What the program's subcommands do; options/ parses their arguments.
 #pragma once
 
 #include <map>
@@ -114,6 +114,7 @@ int run_inspect(const InspectArguments& arguments);
 int run_verify(const VerifyArguments& arguments);
 int run_scene(const BuiltinArguments& arguments);
 int run_devices();
+int run_samplers(bool as_json);
 int run_bench(const BenchArguments& arguments);
 int run_chart(const ChartArguments& arguments);
 int run_compare(const CompareArguments& arguments);

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: MIT
-#include "pipeline/inspect.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -9,6 +7,7 @@
 
 #include "commands/commands.hpp"
 #include "commands/describe.hpp"
+#include "commands/inspected.hpp"
 #include "error.hpp"
 #include "output/pixel_picture.hpp"
 #include "output/write_file.hpp"
@@ -21,136 +20,10 @@ namespace {
 
 using nlohmann::json;
 
-constexpr double believed_hidden = 0.25;  // V^ below
-
-// A report with what it is about.
-struct Inspected {
-    const LoadedScene& loaded;
-    const LightTree& tree;
-    const PixelReport& report;
-    std::vector<InspectedNode> ranked;  // by share of the light, the draws or the noise
-    double luminance;                   // of all lights, cd/m2
-    double draws;
-    uint spp;
-    glm::vec3 rendered;  // cd/m2
-    glm::vec3 emitted;   // by the surface itself, cd/m2
-
-    [[nodiscard]] double light_share(const InspectedNode& n) const {
-        return luminance > 0 ? n.contribution / luminance : 0;
-    }
-    [[nodiscard]] double draw_share(const InspectedNode& n) const {
-        return draws > 0 ? n.draws / draws : 0;
-    }
-    // Standard deviation of the luminance of a pixel sample over the luminance.
-    [[nodiscard]] double deviation() const {
-        return luminance > 0 ? std::sqrt(report.variance) / luminance : 0;
-    }
-    [[nodiscard]] const LightNode& node(const InspectedNode& n) const { return tree.nodes[n.node]; }
-    [[nodiscard]] std::size_t light(const InspectedNode& n) const {
-        return tree.order[node(n).first];
-    }
-    [[nodiscard]] std::string name(const InspectedNode& n) const {
-        return node(n).count == 1 ? name_of(loaded.scene, light(n))
-                                  : fmt::format("{} lights", node(n).count);
-    }
-    [[nodiscard]] std::string place(const InspectedNode& n) const {
-        if (node(n).count == 1) return place_of(loaded.scene, light(n));
-        return (NODE_IS_INFINITE(node(n)) ? "from " : "round ") + show(centre(node(n)));
-    }
-    // In the file's frame, or a direction.
-    [[nodiscard]] glm::dvec3 centre(const LightNode& n) const {
-        const glm::vec3 centre(n.centre);
-        return NODE_IS_INFINITE(n) ? glm::dvec3(centre) : loaded.scene.in_file(centre);
-    }
-};
-
-// What a pixel's surface emits to the camera.
-glm::vec3 emission_of(const PixelReport& report) {
-    if (!report.hit()) return glm::vec3(0);
-    const float4& emission = report.material.emission;
-    return report.surface.front || emission.w != 0 ? glm::vec3(emission) : glm::vec3(0);
-}
-
-Inspected rank(const LoadedScene& loaded, const LightTree& tree, const PixelReport& report) {
-    Inspected out{loaded, tree, report, report.nodes, 0, report.draws(), 0, {}, {}};
-    out.luminance = reference::luminance(report.radiance);
-    out.emitted = emission_of(report);
-    std::ranges::stable_sort(out.ranked, std::greater(), [&](const InspectedNode& n) {
-        return std::max({out.light_share(n), out.draw_share(n), n.noise});
-    });
-    return out;
-}
-
-std::string percent(double share) { return fmt::format("{:.3g}%", 100 * share); }
-
 std::string seen_text(const Inspected& in, const InspectedNode& n) {
     if (n.facing == 0) return "faces away";
     if (in.node(n).count == 1) return n.seen ? "yes" : "no";
     return fmt::format("{} of {}", n.seen, n.facing);
-}
-
-// Why a node makes noise.
-std::string reason(const Inspected& in, const InspectedNode& n) {
-    const double light = in.light_share(n);
-    const double draws = in.draw_share(n);
-    if (n.facing == 0)
-        return fmt::format("cannot light this pixel but gets {} of the draws", percent(draws));
-    if (n.seen == 0)
-        return fmt::format(
-            "is hidden here, but the sampler reckons with V^ {:.2f}, which only {:.3f} draws in a "
-            "sample correct",
-            n.visibility, n.draws);
-    const std::string both = fmt::format("gives {} of the light and gets {} of the draws",
-                                         percent(light), percent(draws));
-    if (light > draws && n.visibility < believed_hidden)
-        return fmt::format("{}, being believed hidden (V^ {:.2f})", both, n.visibility);
-    if (light > 1.5 * draws) return both + ", being estimated too low";
-    if (draws > 1.5 * light) return both + ", being estimated too high";
-    if (n.seen > 0 && n.seen < n.facing)
-        return fmt::format("{}, and only {} of its {} lights are visible", both, n.seen, n.facing);
-    return both;
-}
-
-std::vector<std::string> explain(const Inspected& in) {
-    if (in.luminance == 0 && in.report.variance == 0)
-        return {"It reflects no light, and has no noise."};
-    if (in.luminance == 0)
-        return {
-            fmt::format("It reflects no light; a pixel sample deviates by {:.3g} cd/m2, where "
-                        "lights that are hidden here are drawn.",
-                        std::sqrt(in.report.variance))};
-    std::vector<std::string> out = {
-        fmt::format("A pixel sample here deviates by {} of the light, for the choice of lights; "
-                    "the mean of {} by {}.",
-                    percent(in.deviation()), in.spp,
-                    percent(in.deviation() / std::sqrt(static_cast<double>(in.spp))))};
-    const InspectedNode& worst = *std::ranges::max_element(in.ranked, {}, &InspectedNode::noise);
-    if (in.report.count_noise > worst.noise)
-        out.push_back(fmt::format(
-            "The largest part of that variance, {}, is by the number of draws: {:.0f} or {:.0f}.",
-            percent(in.report.count_noise), std::floor(in.draws), std::ceil(in.draws)));
-    else if (worst.noise > 0)
-        out.push_back(fmt::format("The largest part of that variance, {}, is by {} {}: it {}.",
-                                  percent(worst.noise), in.name(worst), in.place(worst),
-                                  reason(in, worst)));
-    const double off = luminance(in.rendered) - luminance(in.emitted) - in.luminance;
-    const double expected = std::sqrt(in.report.variance / in.spp);
-    if (std::abs(off) > 3 * expected && std::abs(off) > 0.01 * in.luminance)
-        out.push_back(
-            fmt::format("The rendered pixel is off by {:+.3g}%: its earlier samples knew less than "
-                        "is known now, or it differs from its centre.",
-                        100 * off / in.luminance));
-    double hidden_light = 0;
-    double hidden_draws = 0;
-    for (const InspectedNode& n : in.ranked) {
-        if (n.visibility < believed_hidden) hidden_light += in.light_share(n);
-        if (n.contribution == 0) hidden_draws += in.draw_share(n);
-    }
-    out.push_back(
-        fmt::format("{} of the light is by what the sampler believes hidden (V^ below {}); {} of "
-                    "the draws go to what gives no light here.",
-                    percent(hidden_light), believed_hidden, percent(hidden_draws)));
-    return out;
 }
 
 std::string material_text(const Scene& scene, const PixelReport& report) {
@@ -280,6 +153,77 @@ void check_files(const InspectArguments& arguments, const std::string& picture) 
         throw InputError("--json {}: is written by --output too", arguments.json);
 }
 
+// Of the image that the sampler learns from.
+RenderOptions options_of(const InspectArguments& arguments, const LoadedScene& loaded) {
+    RenderOptions options = arguments.options;
+    options.sampler = "adaptive";
+    options.width = loaded.width;
+    options.height = loaded.height;
+    return options;
+}
+
+void check_memory(const Plan& plan, const RenderOptions& options) {
+    if (plan.batches == 1) return;
+    const std::size_t most = options.memory > 0 ? options.memory : plan.total_bytes();
+    throw InputError(
+        "--memory: {:.1f} MiB{} is too little to keep what is learned of {} x {} pixels at "
+        "once; a smaller --height needs less",
+        static_cast<double>(most) / (1 << 20), options.memory > 0 ? "" : " (the default)",
+        options.width, options.height);
+}
+
+json facts_of(const LoadedScene& loaded, const RenderOptions& options, const PixelReport& report) {
+    return {{"version", MANYLIGHT_VERSION},
+            {"scene", loaded.scene.file},
+            {"camera", loaded.view.name},
+            {"width", options.width},
+            {"height", options.height},
+            {"light_samples", options.light_samples},
+            {"spp", options.spp},
+            {"seed", options.seed},
+            {"lights", loaded.scene.lights.size()},
+            {"pixel", {report.pixel.x, report.pixel.y}},
+            {"tile", report.tile},
+            {"hit", report.hit()}};
+}
+
+// What is said of a pixel that there is nothing to say of; empty otherwise.
+std::string why_nothing(const LoadedScene& loaded, const PixelReport& report) {
+    if (!report.hit()) return "It sees nothing: no light is drawn, and it is black without noise.";
+    if (loaded.scene.lights.empty())
+        return "The scene has no lights: none is drawn, and the pixel has no noise.";
+    return "";
+}
+
+// Prints what was found, and writes the files.
+void write_report(const InspectArguments& arguments, const std::string& file,
+                  const RenderOptions& options, const Inspected& in, const Image& image) {
+    const PixelReport& report = in.report;
+    const glm::uvec2 pixel = report.pixel;
+    json out = facts_of(in.loaded, options, report);
+    PixelPicture picture{pixel, ADAPTIVE_TILE, {}, {}};
+    say("pixel {}, {} of {} x {}, {} light samples, {} spp\n", pixel.x, pixel.y, options.width,
+        options.height, options.light_samples, options.spp);
+    if (report.hit()) out["surface"] = surface_json(in.loaded.scene, report.surface);
+    const std::string nothing = why_nothing(in.loaded, report);
+    if (nothing.empty()) {
+        print(in, arguments.top_lights);
+        out.update(to_json(in, arguments.top_lights));
+        picture = make_picture(in, arguments.top_lights);
+    } else {
+        say("{}\n", nothing);
+        out["explanation"] = {nothing};
+        picture.lines = {fmt::format("pixel {}, {}", pixel.x, pixel.y), nothing};
+    }
+    write_png(file, draw_pixel_picture(image, picture), 1, {});
+    say("\nwrote {}\n", file);
+    if (!arguments.json.empty()) {
+        const std::string text = out.dump(2, ' ', true, json::error_handler_t::replace) + "\n";
+        write_file(arguments.json, std::as_bytes(std::span(text)));
+        say("wrote {}\n", arguments.json);
+    }
+}
+
 }  // namespace
 
 int run_inspect(const InspectArguments& arguments) {
@@ -294,23 +238,13 @@ int run_inspect(const InspectArguments& arguments) {
     if (pixel.x >= loaded.width || pixel.y >= loaded.height)
         throw InputError("{}: --pixel {},{}: is outside the image of {} x {} pixels",
                          loaded.scene.file, pixel.x, pixel.y, loaded.width, loaded.height);
-    RenderOptions options = arguments.options;
-    options.sampler = "adaptive";
-    options.width = loaded.width;
-    options.height = loaded.height;
+    const RenderOptions options = options_of(arguments, loaded);
     Device device =
         Device::open(arguments.scene.device, arguments.scene.threads, arguments.scene.lanes);
     device.help(compilers);
     const WideBvh bvh = build_bvh(loaded, device);
     Frame frame(device, loaded.scene, bvh, loaded.camera, options);
-    if (frame.plan().batches > 1) {
-        const std::size_t most = options.memory > 0 ? options.memory : frame.plan().total_bytes();
-        throw InputError(
-            "--memory: {:.1f} MiB{} is too little to keep what is learned of {} x {} pixels at "
-            "once; a smaller --height needs less",
-            static_cast<double>(most) / (1 << 20), options.memory > 0 ? "" : " (the default)",
-            options.width, options.height);
-    }
+    check_memory(frame.plan(), options);
     frame.prepare();
     const FrameResult result = [&] {
         Progress progress("rendering");
@@ -328,44 +262,7 @@ int run_inspect(const InspectArguments& arguments) {
     in.spp = options.spp;
     const float* rgb = result.image.at(pixel.x, pixel.y);
     in.rendered = {rgb[0], rgb[1], rgb[2]};
-
-    json out = {{"version", MANYLIGHT_VERSION},
-                {"scene", loaded.scene.file},
-                {"camera", loaded.view.name},
-                {"width", options.width},
-                {"height", options.height},
-                {"light_samples", options.light_samples},
-                {"spp", options.spp},
-                {"seed", options.seed},
-                {"lights", loaded.scene.lights.size()},
-                {"pixel", {pixel.x, pixel.y}},
-                {"tile", tile},
-                {"hit", report.hit()}};
-    PixelPicture picture{pixel, ADAPTIVE_TILE, {}, {}};
-    say("pixel {}, {} of {} x {}, {} light samples, {} spp\n", pixel.x, pixel.y, options.width,
-        options.height, options.light_samples, options.spp);
-    std::string nothing;
-    if (!report.hit())
-        nothing = "It sees nothing: no light is drawn, and it is black without noise.";
-    else if (!lit)
-        nothing = "The scene has no lights: none is drawn, and the pixel has no noise.";
-    if (report.hit()) out["surface"] = surface_json(loaded.scene, report.surface);
-    if (nothing.empty()) {
-        print(in, arguments.top_lights);
-        out.update(to_json(in, arguments.top_lights));
-        picture = make_picture(in, arguments.top_lights);
-    } else {
-        say("{}\n", nothing);
-        out["explanation"] = {nothing};
-        picture.lines = {fmt::format("pixel {}, {}", pixel.x, pixel.y), nothing};
-    }
-    write_png(file, draw_pixel_picture(result.image, picture), 1, {});
-    say("\nwrote {}\n", file);
-    if (!arguments.json.empty()) {
-        const std::string text = out.dump(2, ' ', true, json::error_handler_t::replace) + "\n";
-        write_file(arguments.json, std::as_bytes(std::span(text)));
-        say("wrote {}\n", arguments.json);
-    }
+    write_report(arguments, file, options, in, result.image);
     return 0;
 }
 

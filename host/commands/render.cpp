@@ -4,15 +4,15 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <utility>
 
 #include "clock.hpp"
 #include "commands/commands.hpp"
-#include "commands/repeat.hpp"
+#include "commands/render_facts.hpp"
+#include "commands/render_files.hpp"
 #include "error.hpp"
-#include "output/cluster_map.hpp"
-#include "output/write_file.hpp"
 #include "pipeline/aov.hpp"
 #include "pipeline/frame.hpp"
 #include "pipeline/top_lights.hpp"
@@ -27,57 +27,6 @@ namespace fs = std::filesystem;
 
 std::string mebibytes(std::size_t bytes) {
     return fmt::format("{:.1f} MiB", static_cast<double>(bytes) / (1 << 20));
-}
-
-// The files to be made, with the options that name them.
-std::vector<std::pair<std::string, std::string>> files_of(const RenderArguments& arguments,
-                                                          const std::vector<std::string>& images) {
-    std::vector<std::pair<std::string, std::string>> files;
-    for (const std::string& image : images) files.emplace_back("--output", image);
-    if (!arguments.cluster_map.empty()) files.emplace_back("--cluster-map", arguments.cluster_map);
-    if (!arguments.stats.empty()) files.emplace_back("--stats", arguments.stats);
-    if (!arguments.checkpoint.empty()) files.emplace_back("--checkpoint", arguments.checkpoint);
-    return files;
-}
-
-// Before any work: every file can be written, and none is the scene or another one.
-void check_files(const RenderArguments& arguments, const std::vector<std::string>& images) {
-    const auto files = files_of(arguments, images);
-    for (const auto& [option, path] : files) {
-        std::vector<std::string> endings;
-        if (option == "--output") endings = {".exr", ".png"};
-        if (option == "--cluster-map") endings = {".png"};
-        check_output(option, path, endings);
-    }
-    for (std::size_t i = 0; i < files.size(); ++i) {
-        const auto& [option, path] = files[i];
-        if (same_file(path, arguments.scene.file))
-            throw InputError("{} {}: is the scene itself", option, path);
-        for (std::size_t j = 0; j < i; ++j)
-            if (same_file(path, files[j].second))
-                throw InputError("{} {}: is written by {} too", option, path, files[j].first);
-    }
-}
-
-// A checkpoint is hours of work: none is lost by forgetting an option.
-void check_checkpoint(const RenderArguments& arguments) {
-    if (arguments.checkpoint.empty()) return;
-    if (arguments.seconds > 0)
-        throw InputError("--checkpoint {}: not with --time, which ends where the machine is",
-                         arguments.checkpoint);
-    std::error_code error;
-    if (!arguments.resume && fs::exists(arguments.checkpoint, error))
-        throw InputError(
-            "--checkpoint {}: is there already; add --resume to go on from it, or "
-            "remove it",
-            arguments.checkpoint);
-}
-
-// What to go on from, if asked for and there.
-std::optional<Checkpoint> find_checkpoint(const RenderArguments& arguments) {
-    std::error_code error;
-    if (!arguments.resume || !fs::exists(arguments.checkpoint, error)) return {};
-    return read_checkpoint(arguments.checkpoint);
 }
 
 // Renders, on from the checkpoint if there is one, and saves to it.
@@ -102,72 +51,6 @@ void print_plan(const LoadedScene& loaded, const Plan& plan, const DeviceInfo& d
     say("; {} batch{}\n", plan.batches, plan.batches == 1 ? "" : "es");
 }
 
-// All options that the image depends on, and the pixel samples that it has: with as many, they
-// repeat it.
-OptionList options_of(const RenderArguments& arguments, const RenderOptions& options,
-                      const LoadedScene& loaded, const Device& device, const FrameResult& result) {
-    SceneArguments scene = arguments.scene;
-    if (scene.camera.empty() && !loaded.scene.views.empty()) scene.camera = loaded.view.name;
-    scene.emitter_points = loaded.emitter_points;
-    scene.headlight = loaded.headlight ? Headlight::always : Headlight::never;
-    OptionList list = view_options(scene);
-    for (auto& option : image_options(options)) list.push_back(std::move(option));
-    if (result.spp == std::floor(result.spp))
-        list.emplace_back("spp", static_cast<uint>(result.spp));
-    else
-        list.emplace_back("spp", result.spp);
-    if (options.memory > 0) list.emplace_back("memory", options.memory);
-    list.emplace_back("device", device.info().name);
-    const unsigned lanes = device.form().lanes;
-    list.emplace_back("device-form", lanes == 1 ? "gpu" : std::to_string(lanes));
-    return list;
-}
-
-json make_stats(const OptionList& options, bool estimates_error, const LoadedScene& loaded,
-                const Plan& plan, const FrameResult& result, Device& device) {
-    json stats = {{"version", MANYLIGHT_VERSION},
-                  {"platform", device.info().platform},
-                  {"first_light_samples", result.light_samples},
-                  {"later_light_samples", result.later_light_samples}};
-    for (const auto& [option, value] : options) stats[field_of(option)] = value;
-    stats["triangles"] = loaded.scene.seen_triangle_count();
-    stats["lights"] = loaded.scene.lights.size();
-    stats["clusters"] = result.clusters;
-    stats["batches"] = plan.batches;
-    stats["cut_short"] = result.is_cut_short;
-    stats["rays"] = {{"primary", result.primary_rays}, {"shadow", result.shadow_rays}};
-    stats["memory_bytes"] = {{"device_peak", device.peak_bytes()},
-                             {"planned", plan.total_bytes()},
-                             {"matrix", plan.matrix_bytes}};
-    if (estimates_error)
-        stats["error"] = result.error ? json{{"relmse", result.error->relmse},
-                                             {"standard_error", result.error->standard_error}}
-                                      : json();
-    const std::map<std::string, double> stages = device.stage_seconds();
-    stats["stage_seconds"] = stages;
-    const auto shadows = stages.find("shadows");
-    if (shadows != stages.end() && shadows->second > 0 && !result.is_resumed)
-        stats["shadow_mrays_per_s"] =
-            static_cast<double>(result.shadow_rays) / shadows->second / 1e6;
-    return stats;
-}
-
-Metadata make_metadata(const OptionList& options, const FrameResult& result, double seconds,
-                       const Device& device) {
-    Metadata metadata = {
-        {"Software", "manylight " MANYLIGHT_VERSION},
-        {"manylight:version", MANYLIGHT_VERSION},
-        {"manylight:platform", device.info().platform},
-        {"manylight:first_light_samples", std::to_string(result.light_samples)},
-        {"manylight:later_light_samples", std::to_string(result.later_light_samples)},
-        {"manylight:cut_short", result.is_cut_short ? "true" : "false"},
-        {"manylight:seconds", static_cast<float>(seconds)}};
-    // As text: a seed may not fit a signed integer, nor a number a float.
-    for (const auto& [option, value] : options)
-        metadata["manylight:" + field_of(option)] = text_of(value);
-    return metadata;
-}
-
 bool asks_clusters(const RenderOptions& options) {
     return std::ranges::any_of(all_aovs(), [&](const Aov& aov) {
         return aov.needs_clusters && std::ranges::count(options.aovs, aov.name) > 0;
@@ -179,69 +62,43 @@ void warn_if_not_finite(const Image& image) {
     if (bad > 0) warn("{} pixel values are not finite numbers", bad);
 }
 
-void write_images(const RenderArguments& arguments, const std::vector<std::string>& images,
-                  const FrameResult& result, const Metadata& metadata) {
-    // By as many stops as the header says, so that these make the same picture.
-    const float stops = arguments.exposure.value_or(std::log2(auto_exposure(result.image)));
-    const float exposure = std::exp2(stops);
-    Metadata exposed = metadata;
-    exposed["manylight:exposure"] = fmt::format("{}", stops);
-    std::vector<Image> layers = {result.image};
-    for (const auto& [name, image] : result.aovs)
-        if (std::ranges::count(arguments.options.aovs, name)) layers.push_back(image);
-    for (const std::string& path : images) {
-        if (path.ends_with(".exr"))
-            write_exr(path, layers, metadata);
-        else
-            write_png(path, result.image, exposure, exposed);
-    }
-    if (!arguments.cluster_map.empty())
-        write_png(arguments.cluster_map, draw_cluster_map(result.image, exposure, result.aovs), 1,
-                  exposed);
-}
-
-void write_stats(const std::string& path, const json& stats) {
-    if (path.empty()) return;
-    const std::string text = stats.dump(2, ' ', true, json::error_handler_t::replace) + "\n";
-    write_file(path, std::as_bytes(std::span(text)));
-}
-
-// When rendering has to end for everything to be written in time.
-Clock::time_point deadline_of(const RenderArguments& arguments,
-                              const std::vector<std::string>& images, const LoadedScene& loaded) {
-    // Seconds that encoding a pixel takes, of a layer where there are several.
-    constexpr double exr = 450e-9;
-    constexpr double png = 450e-9;
-    const double pixels = static_cast<double>(loaded.width) * loaded.height;
-    double writing = 0.03;
-    for (const std::string& image : images)
-        writing += pixels * (image.ends_with(".exr")
-                                 ? exr * static_cast<double>(1 + arguments.options.aovs.size())
-                                 : png);
-    return process_start() + std::chrono::duration_cast<Clock::duration>(
-                                 std::chrono::duration<double>(arguments.seconds - writing));
-}
-
 // The parts of a run, in their order, with their seconds: together all of it.
-using Phases = std::vector<std::pair<const char*, double>>;
+struct Timer {
+    Clock::time_point begun = Clock::now();  // the part that is not yet there
+    std::vector<std::pair<std::string, double>> phases = {
+        {"start", std::max(std::chrono::duration<double>(begun - process_start()).count(), 0.0)}};
 
-// "load 0.10, render 2.30".
-std::string describe(const Phases& phases) {
-    std::string out;
-    for (const auto& [name, seconds] : phases)
-        out += fmt::format("{}{} {:.2f}", out.empty() ? "" : ", ", name, seconds);
-    return out;
-}
+    void ends(const char* name) {
+        phases.emplace_back(name, seconds_since(begun));
+        begun = Clock::now();
+    }
+    // Takes what is known of parts of the last one out of it.
+    void part(const std::vector<std::pair<std::string, double>>& parts) {
+        for (const auto& [name, seconds] : parts) phases.back().second -= seconds;
+        phases.back().second = std::max(phases.back().second, 0.0);
+        phases.insert(phases.end(), parts.begin(), parts.end());
+    }
+    [[nodiscard]] double total() const {
+        double sum = 0;
+        for (const auto& [name, seconds] : phases) sum += seconds;
+        return sum;
+    }
+    // "load 0.10, render 2.30".
+    [[nodiscard]] std::string text() const {
+        std::string out;
+        for (const auto& [name, seconds] : phases)
+            out += fmt::format("{}{} {:.2f}", out.empty() ? "" : ", ", name, seconds);
+        return out;
+    }
+};
 
-void print_summary(const RenderOptions& options, const FrameResult& result, const Phases& phases) {
+void print_summary(const RenderOptions& options, const FrameResult& result, const Timer& timer) {
     const std::string later = result.later_light_samples == result.light_samples
                                   ? ""
                                   : fmt::format(", later {}", result.later_light_samples);
-    double seconds = 0;
-    for (const auto& [name, part] : phases) seconds += part;
     say("{}, {} light samples{}, {:.4g} spp, {} x {}: {:.2f} s ({})\n", options.sampler,
-        result.light_samples, later, result.spp, options.width, options.height, seconds,
-        describe(phases));
+        result.light_samples, later, result.spp, options.width, options.height, timer.total(),
+        timer.text());
     if (result.error)
         say("estimated relMSE {:.3g} +- {:.2g} (95%){}\n", result.error->relmse,
             result.error->margin(),
@@ -252,7 +109,7 @@ void print_summary(const RenderOptions& options, const FrameResult& result, cons
 
 // What was asked for, and is not so.
 void warn_of_goals(const RenderArguments& arguments, const FrameResult& result,
-                   const Phases& phases) {
+                   const Timer& timer) {
     const double target = arguments.options.target_error;
     if (target > 0 && !result.error)
         warn("--target-error {}: not reached, as far as is known: there is no estimate", target);
@@ -261,7 +118,7 @@ void warn_of_goals(const RenderArguments& arguments, const FrameResult& result,
     const double over = seconds_since(process_start()) - arguments.seconds;
     if (arguments.seconds == 0 || over < 0.05) return;
     warn("--time {}: exceeded by {:.2f} s ({}); every pixel gets one sample, whatever the time",
-         arguments.seconds, over, describe(phases));
+         arguments.seconds, over, timer.text());
 }
 
 bool is_black(const Image& image) {
@@ -281,18 +138,8 @@ void warn_of_interrupt(const RenderOptions& options, const FrameResult& result) 
              : "");
 }
 
-}  // namespace
-
-int run_render(const RenderArguments& arguments) {
-    const auto start = Clock::now();
-    Phases phases = {
-        {"start", std::max(std::chrono::duration<double>(start - process_start()).count(), 0.0)}};
-    auto phase_ends = [&phases, begun = start](const char* name) mutable {
-        phases.emplace_back(name, seconds_since(begun));
-        begun = Clock::now();
-    };
-    std::vector<std::string> images = arguments.outputs;
-    if (images.empty()) images = {fs::path(arguments.scene.file).stem().string() + ".png"};
+// Refuses what cannot be made; returns what is asked of the frame.
+RenderOptions check(const RenderArguments& arguments, const std::vector<std::string>& images) {
     check_files(arguments, images);
     check_checkpoint(arguments);
     RenderOptions options = arguments.options;
@@ -306,6 +153,73 @@ int run_render(const RenderArguments& arguments) {
                              arguments.cluster_map, arguments.sampler);
         for (const char* name : {"cluster", "representative"}) options.aovs.emplace_back(name);
     }
+    return options;
+}
+
+std::string sampler_of(const RenderArguments& arguments, const RenderOptions& options,
+                       const LoadedScene& loaded) {
+    if (arguments.sampler != "auto") return arguments.sampler;
+    const SamplerChoice choice =
+        choose_sampler(loaded.scene.lights.size(), options.samples_of(0), asks_clusters(options));
+    if (!arguments.quiet) say("sampler {}: {}\n", choice.name, choice.reason);
+    return std::string(choice.name);
+}
+
+// Whether a signal has come, which is said once.
+std::function<bool()> interrupted_by_signal() {
+    return [said = false]() mutable {
+        if (pending_signal() != 0 && !std::exchange(said, true))
+            warn("interrupted: the image so far will be written; once more ends at once");
+        return pending_signal() != 0;
+    };
+}
+
+// What is odd about the image.
+void warn_of_image(const RenderOptions& options, const LoadedScene& loaded,
+                   const FrameResult& result, Timer& timer) {
+    warn_if_not_finite(result.image);
+    if (result.is_cut_short && pending_signal() != 0) {
+        warn_of_interrupt(options, result);
+        if (result.spp == 0) end_by(pending_signal());
+    } else if (is_black(result.image)) {
+        warn("the image is black: {}", why_black(loaded.scene, loaded.camera, loaded.width,
+                                                 loaded.height, options.hide_emitters));
+        timer.ends("look why");
+    }
+}
+
+// Writes and prints all that was asked for.
+void report(const RenderArguments& arguments, const std::vector<std::string>& images,
+            const RenderOptions& options, const LoadedScene& loaded, const Plan& plan,
+            const FrameResult& result, Device& device, Timer& timer) {
+    const OptionList list = options_of(arguments, options, loaded, device, result);
+    json stats = make_stats(list, options.estimates_error(), loaded, plan, result, device);
+    if (arguments.top_lights > 0 && pending_signal() == 0) {
+        stats["top_lights"] =
+            report_top_lights(loaded, arguments.top_lights, options.seed, arguments.quiet);
+        timer.ends("top lights");
+    }
+    write_images(arguments, images, result,
+                 make_metadata(list, result, seconds_since(process_start()), device));
+    timer.ends("write");
+    for (const auto& [name, seconds] : timer.phases) stats["seconds"][name] = seconds;
+    stats["seconds"]["total"] = timer.total();
+    write_stats(arguments.stats, stats);
+    if (!arguments.quiet) {
+        print_summary(options, result, timer);
+        for (const auto& [option, path] : files_of(arguments, images))
+            if (fs::exists(path)) say("wrote {}\n", path);
+    }
+    warn_of_goals(arguments, result, timer);
+}
+
+}  // namespace
+
+int run_render(const RenderArguments& arguments) {
+    Timer timer;
+    std::vector<std::string> images = arguments.outputs;
+    if (images.empty()) images = {fs::path(arguments.scene.file).stem().string() + ".png"};
+    RenderOptions options = check(arguments, images);
     const std::optional<Checkpoint> checkpoint = find_checkpoint(arguments);
     if (checkpoint) options.begun_spp = checkpoint->state.get<uint>("spp");
 
@@ -313,28 +227,18 @@ int run_render(const RenderArguments& arguments) {
     const LoadedScene loaded = load(arguments.scene, arguments.quiet);
     for (const auto& [option, path] : files_of(arguments, images))
         refuse_scene_file(loaded.scene, option, path);
-    options.sampler = arguments.sampler;
-    if (arguments.sampler == "auto") {
-        const SamplerChoice choice = choose_sampler(loaded.scene.lights.size(),
-                                                    options.samples_of(0), asks_clusters(options));
-        options.sampler = choice.name;
-        if (!arguments.quiet) say("sampler {}: {}\n", choice.name, choice.reason);
-    }
+    options.sampler = sampler_of(arguments, options, loaded);
     options.width = loaded.width;
     options.height = loaded.height;
-    phase_ends("load");
+    timer.ends("load");
     Device device =
         Device::open(arguments.scene.device, arguments.scene.threads, arguments.scene.lanes);
     device.help(compilers);
-    phase_ends("device");
+    timer.ends("device");
     const WideBvh bvh = build_bvh(loaded, device, arguments.quiet);
-    phase_ends("build");
+    timer.ends("build");
     if (arguments.seconds > 0) options.deadline = deadline_of(arguments, images, loaded);
-    options.interrupted = [said = false]() mutable {
-        if (pending_signal() != 0 && !std::exchange(said, true))
-            warn("interrupted: the image so far will be written; once more ends at once");
-        return pending_signal() != 0;
-    };
+    options.interrupted = interrupted_by_signal();
     Frame frame(device, loaded.scene, bvh, loaded.camera, options);
     if (checkpoint && checkpoint->render != frame.name())
         throw InputError(
@@ -344,45 +248,12 @@ int run_render(const RenderArguments& arguments) {
     frame.prepare();
     const KeptSignals kept;
     const FrameResult result = render_frame(frame, arguments, checkpoint);
-    phase_ends("upload");
-    const double inside = device.compile_seconds() + result.prepare_seconds + result.render_seconds;
-    phases.back().second = std::max(phases.back().second - inside, 0.0);
-    phases.insert(phases.end(), {{"compile", device.compile_seconds()},
-                                 {"prepare", result.prepare_seconds},
-                                 {"render", result.render_seconds}});
-    warn_if_not_finite(result.image);
-    if (result.is_cut_short && pending_signal() != 0) {
-        warn_of_interrupt(options, result);
-        if (result.spp == 0) end_by(pending_signal());
-    } else if (is_black(result.image)) {
-        warn("the image is black: {}", why_black(loaded.scene, loaded.camera, loaded.width,
-                                                 loaded.height, options.hide_emitters));
-        phase_ends("look why");
-    }
-
-    const OptionList list = options_of(arguments, options, loaded, device, result);
-    json stats = make_stats(list, options.estimates_error(), loaded, frame.plan(), result, device);
-    if (arguments.top_lights > 0 && pending_signal() == 0) {
-        stats["top_lights"] =
-            report_top_lights(loaded, arguments.top_lights, options.seed, arguments.quiet);
-        phase_ends("top lights");
-    }
-    write_images(arguments, images, result,
-                 make_metadata(list, result, seconds_since(process_start()), device));
-    phase_ends("write");
-    double total = 0;
-    for (const auto& [name, seconds] : phases) {
-        stats["seconds"][name] = seconds;
-        total += seconds;
-    }
-    stats["seconds"]["total"] = total;
-    write_stats(arguments.stats, stats);
-    if (!arguments.quiet) {
-        print_summary(options, result, phases);
-        for (const auto& [option, path] : files_of(arguments, images))
-            if (fs::exists(path)) say("wrote {}\n", path);
-    }
-    warn_of_goals(arguments, result, phases);
+    timer.ends("upload");
+    timer.part({{"compile", device.compile_seconds()},
+                {"prepare", result.prepare_seconds},
+                {"render", result.render_seconds}});
+    warn_of_image(options, loaded, result, timer);
+    report(arguments, images, options, loaded, frame.plan(), result, device, timer);
     if (pending_signal() != 0) end_by(pending_signal());
     return 0;
 }

@@ -1,52 +1,15 @@
 // SPDX-License-Identifier: MIT
-// Sampler adaptive, step by step: what kernels/cuts.cl, visibility.cl and samplers/adaptive.cl
-// compute.
+// What sampler adaptive draws, step by step: what kernels/samplers/adaptive/adaptive.cl computes.
 #pragma once
 
-#include <functional>
+#include <span>
+#include <vector>
 
+#include "reference/node_estimate.hpp"
 #include "reference/samples.hpp"
 #include "shared/adaptive.h"
 
 namespace manylight::reference {
-
-/// A node's radiance reflected to the camera if nothing is in between, estimated from its
-/// statistics: intensity x softened cosines / squared distance x BRDF towards its centre, cd/m2.
-[[nodiscard]] glm::dvec3 node_estimate(const LightTree& tree, uint node, const Point& point);
-
-/// Shadow rays: how many, and how many passed.
-struct Rays {
-    double traced = 0;
-    double passed = 0;
-};
-
-struct TileCut {
-    std::vector<uint> nodes;   // [slot]
-    std::vector<Rays> probes;  // [slot]
-    bool uncertain = false;    // rounding may have made another one
-};
-
-/// Stage cuts for one tile of a run, numbered within it; `surfaces`: of the run's items.
-[[nodiscard]] TileCut make_cut(const LightTree& tree, const Scene& scene, const Tracer& tracer,
-                               const Camera& camera, const Tiles& tiles, uint tile,
-                               std::span<const Surface> surfaces, uint cut_size, uint probe_rays,
-                               uint seed);
-
-/// What is known of a tile's slots.
-struct TileRays {
-    std::vector<uint> nodes;   // [slot], the cut
-    std::vector<Rays> totals;  // [slot], probes and all cells
-};
-
-/// [slot] a tile's totals with what the tiles beside, above and below it lend: their rays by the
-/// share of each node's lights that it has in common with the slot's, 16 rays at most.
-[[nodiscard]] std::vector<Rays> share_rays(const LightTree& tree, const Tiles& tiles, uint tile,
-                                           std::span<const TileRays> all);
-
-/// Stage visibility for one tile: [64 * slot + cell] V^, from what is known of the slots, and what
-/// cells counted, [64 * slot + cell], cells in Morton order.
-[[nodiscard]] std::vector<double> estimate_visibility(std::span<const Rays> shared,
-                                                      std::span<const Rays> counts);
 
 struct Drawn {
     uint slot, node;
@@ -65,7 +28,7 @@ struct PixelDraws {
 };
 
 /// Where in [0, 1) a pixel's systematic draw starts, and what rounds the number of its draws; see
-/// draw_start() in kernels/samplers/adaptive.cl.
+/// draw_start() in kernels/samplers/adaptive/adaptive.cl.
 struct Starts {
     double position, rounding;
 };

@@ -160,7 +160,7 @@ std::optional<Tracer::RoundedHit> Tracer::meet_plane(uint triangle, const Ray& r
     const double t = glm::dot(n, s) / determinant;
     const double far = std::max({glm::length(s), glm::length(s - e1), glm::length(s - e2)});
     const double edge = std::max({glm::length(e1), glm::length(e2), glm::length(e2 - e1)});
-    // Twice the kernels' margin (kernels/lib/bvh.h), whose test is rounded.
+    // Twice the kernels' margin (kernels/lib/block.h), whose test is rounded.
     RoundedHit met{{triangle, t, glm::dot(e2, q), -glm::dot(e1, q)},
                    2e-6 * far * edge * glm::length(d) / size,
                    0,

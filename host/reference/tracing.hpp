@@ -45,7 +45,7 @@ class Tracer {
     [[nodiscard]] std::optional<Hit> hit_of(uint triangle, const Ray& ray) const;
 
     /// Where a ray meets a triangle's plane, in the triangle or beyond its edges by no more than
-    /// single precision makes of it (kernels/lib/bvh.h), so that no ray passes between two
+    /// single precision makes of it (kernels/lib/block.h), so that no ray passes between two
     /// triangles that share an edge.
     [[nodiscard]] std::optional<Hit> hit_near(uint triangle, const Ray& ray) const;
 

@@ -102,6 +102,7 @@ class LightSampler {
 struct Sampler {
     std::string_view name;
     std::string_view summary;  // one line for help
+    std::string_view color;    // on charts, #rrggbb
     bool biased = false;
     bool all_lights = false;  // light sample i is light i
     bool tree = false;        // needs the light tree

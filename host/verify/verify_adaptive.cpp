@@ -5,8 +5,10 @@
 
 #include "reference/adaptive.hpp"
 #include "reference/contributions.hpp"
+#include "reference/cuts.hpp"
 #include "reference/random.hpp"
 #include "reference/tiles.hpp"
+#include "reference/visibility.hpp"
 #include "samplers/adaptive/adaptive_samples.hpp"
 #include "verify/tolerances.hpp"
 #include "verify/verify.hpp"

@@ -5,7 +5,7 @@
 #ifndef MANYLIGHT_LIB_RAYS_H
 #define MANYLIGHT_LIB_RAYS_H
 
-#include "lib/packet.h"
+#include "lib/trace_packet.h"
 
 #define RAY_END(rays, packet, lane) (rays)[64 * (ulong)(packet) + 48 + (lane)]
 

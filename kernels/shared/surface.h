@@ -32,8 +32,8 @@ SHARED_SIZE(Surface, 64)
 /// of its coordinates, and e times that of what it is made of. To an instance's frame and back,
 /// differences, matrices and sums of three products come to 7 e of their part. A point of an
 /// emitter is a sum of an area's corner and sides, each rounded before: 8 e. This is 10 e. What the
-/// test of a triangle rounds is not in it (see prepare_block() in kernels/lib/bvh.h). (After Pharr,
-/// Jakob, Humphreys, "Physically Based Rendering" 4th ed., 6.8.)
+/// test of a triangle rounds is not in it (see prepare_block() in kernels/lib/block.h). (After
+/// Pharr, Jakob, Humphreys, "Physically Based Rendering" 4th ed., 6.8.)
 #define OFFSET_SCALE 1.2e-6f
 
 /// A mesh with vertex normals stands for a rounder body, of which its triangles cut off the bulge.

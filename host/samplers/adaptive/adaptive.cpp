@@ -200,6 +200,7 @@ Sampler sampler_adaptive() {
     return {
         .name = "adaptive",
         .summary = "by contribution and learned visibility, from a cut of the light tree per tile",
+        .color = "#d62728",
         .tree = true,
         .learns = true,
         .tile_size = ADAPTIVE_TILE,

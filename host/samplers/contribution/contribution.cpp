@@ -62,6 +62,7 @@ Sampler sampler_contribution() {
     return {.name = "contribution",
             .summary =
                 "by contribution to the cluster's representative, shadows included (the paper's)",
+            .color = "#ff7f0e",
             .biased = true,
             .clusters = true,
             .footprint = ByContribution::footprint,
@@ -73,6 +74,7 @@ Sampler sampler_contribution() {
 Sampler sampler_contribution_defensive() {
     return {.name = "contribution-defensive",
             .summary = "the paper's, mixed with unshadowed contribution and power",
+            .color = "#e377c2",
             .clusters = true,
             .footprint = ByContribution::footprint,
             .make = [](const SamplerContext& context) -> std::unique_ptr<LightSampler> {

@@ -6,6 +6,7 @@ namespace manylight {
 Sampler sampler_exhaustive() {
     return {.name = "exhaustive",
             .summary = "all lights at every pixel sample: exact, slow",
+            .color = "#444444",
             .all_lights = true,
             .footprint = OneLight::footprint,
             .make = [](const SamplerContext& context) -> std::unique_ptr<LightSampler> {

@@ -6,6 +6,7 @@ namespace manylight {
 Sampler sampler_lighttree() {
     return {.name = "lighttree",
             .summary = "down a light tree by bounds on distance, angles and power (pbrt-v4's)",
+            .color = "#1f77b4",
             .tree = true,
             .footprint = OneLight::footprint,
             .make = [](const SamplerContext& context) -> std::unique_ptr<LightSampler> {

@@ -19,6 +19,7 @@ Footprint ByPower::footprint(const SamplerLoad& load) {
 Sampler sampler_power() {
     return {.name = "power",
             .summary = "lights by their power",
+            .color = "#9467bd",
             .footprint = ByPower::footprint,
             .make = [](const SamplerContext& context) -> std::unique_ptr<LightSampler> {
                 return std::make_unique<ByPower>(context, "samplers/power/power.cl");

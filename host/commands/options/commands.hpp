@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: MIT
+// Each adds a command to the program: its options, and what runs it, as `run`, once they are
+// parsed.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <functional>
+
+namespace manylight::options {
+
+void add_render(CLI::App& app, std::function<int()>& run);
+void add_inspect(CLI::App& app, std::function<int()>& run);
+void add_verify(CLI::App& app, std::function<int()>& run);
+void add_bench(CLI::App& app, std::function<int()>& run);
+void add_scene_command(CLI::App& app, std::function<int()>& run);
+void add_chart(CLI::App& app, std::function<int()>& run);
+void add_compare(CLI::App& app, std::function<int()>& run);
+
+}  // namespace manylight::options

@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: MIT
+// Surface points and what they reflect. Included by lib/node_estimate.h, which says what REAL and
+// NAMED are: for one point and for LANES points.
+
+// Surface points, by coordinates.
+typedef struct NAMED(Points) {
+    REAL px, py, pz;        // positions
+    REAL nx, ny, nz;        // unit shading normals
+    REAL red, green, blue;  // base colours
+#if HAS_GGX
+    REAL vx, vy, vz;  // unit, to the camera
+    REAL metallic, alpha, specular;
+#if HAS_REFLECTANCE
+    REAL f0_red, f0_green, f0_blue;  // Material::reflectance
+#endif
+    bool glossy;  // whether any of them has a lobe
+#endif
+} NAMED(Points);
+
+typedef struct NAMED(Color) {
+    REAL red, green, blue;
+} NAMED(Color);
+
+INLINE REAL NAMED(dot3)(REAL ax, REAL ay, REAL az, REAL bx, REAL by, REAL bz) {
+    return fma(ax, bx, fma(ay, by, az * bz));
+}
+
+// 1 - the cosine of the angle of two unit vectors, whose cosine it is.
+INLINE REAL NAMED(versine)(REAL cosine, REAL ax, REAL ay, REAL az, REAL bx, REAL by, REAL bz) {
+    const REAL x = fma(ay, bz, -az * by), y = fma(az, bx, -ax * bz), z = fma(ax, by, -ay * bx);
+    return WHERE(cosine > 0.0f, NAMED(dot3)(x, y, z, x, y, z) * NAMED(inverse)(1.0f + fabs(cosine)),
+                 1.0f - cosine);
+}
+
+// (k + sqrt(k^2 + v)) / 2: max(k, 0), smoothed over sqrt(v); positive where v is, whatever the
+// rounding.
+INLINE REAL NAMED(soft)(REAL k, REAL v) {
+    const REAL t = 0.5f * (fabs(k) + NAMED(root)(fma(k, k, v)));
+    return WHERE(k >= 0.0f, t, 0.25f * v * NAMED(inverse)(max(t, (REAL)(1e-30f))));
+}
+
+// Radiance reflected to the camera per illuminance from unit directions w: glTF's BRDF (lib/brdf.h)
+// with a lobe that is widened by the lights' squared angular spread, times cosines and all else in
+// `factor`. What stage reflections has of a light of `solid_angle` is left to it.
+INLINE NAMED(Color) NAMED(reflect)(const NAMED(Points) * p, REAL wx, REAL wy, REAL wz, REAL spread,
+                                   REAL solid_angle, REAL factor) {
+    NAMED(Color) c;
+#if HAS_GGX
+    if (p->glossy) {
+        REAL hx = wx + p->vx, hy = wy + p->vy, hz = wz + p->vz;
+        const REAL scale =
+            NAMED(inverse_root)(max(NAMED(dot3)(hx, hy, hz, hx, hy, hz), (REAL)(1e-30f)));
+        hx *= scale;
+        hy *= scale;
+        hz *= scale;
+        const REAL a2 = fma(p->alpha, p->alpha, 0.25f * spread);
+        const REAL n_h = NAMED(dot3)(p->nx, p->ny, p->nz, hx, hy, hz);
+        const REAL n_in = max(NAMED(dot3)(p->nx, p->ny, p->nz, wx, wy, wz), (REAL)(0.0f));
+        const REAL n_out =
+            max(fabs(NAMED(dot3)(p->nx, p->ny, p->nz, p->vx, p->vy, p->vz)), (REAL)(1e-4f));
+        // 1 - (N.H)^2 would cancel for small alpha.
+        const REAL sx = fma(p->ny, hz, -p->nz * hy);
+        const REAL sy = fma(p->nz, hx, -p->nx * hz);
+        const REAL sz = fma(p->nx, hy, -p->ny * hx);
+        const REAL width = fma(a2 * n_h, n_h, NAMED(dot3)(sx, sy, sz, sx, sy, sz));
+        const REAL in = n_in + NAMED(root)(fma(1.0f - a2, n_in * n_in, a2));
+        const REAL out = n_out + NAMED(root)(fma(1.0f - a2, n_out * n_out, a2));
+        const REAL across = NAMED(inverse)(max(width, 0.5f * a2));  // w = -v: no h
+        REAL lobe = M_1_PI_F * a2 * across * across * NAMED(inverse)(in * out);
+#if HAS_REFLECTIONS
+        const REAL ratio = 0.5f * lobe * in * solid_angle;  // light_share() of lib/brdf.h
+        lobe *= NAMED(inverse)(fma(ratio, ratio, (REAL)(1.0f)));
+#endif
+        const REAL m = max(1.0f - fabs(NAMED(dot3)(p->vx, p->vy, p->vz, hx, hy, hz)), (REAL)(0.0f));
+        const REAL fresnel = (m * m) * (m * m) * m;
+#if HAS_REFLECTANCE
+        const REAL red = p->specular * fma(1.0f - p->f0_red, fresnel, p->f0_red);
+        const REAL green = p->specular * fma(1.0f - p->f0_green, fresnel, p->f0_green);
+        const REAL blue = p->specular * fma(1.0f - p->f0_blue, fresnel, p->f0_blue);
+        const REAL ks = (1.0f - p->metallic) * lobe;
+        const REAL metal = p->metallic * lobe * fresnel;
+        const REAL base = (1.0f - p->metallic) * (1.0f - max(max(red, green), blue)) * M_1_PI_F +
+                          p->metallic * lobe * (1.0f - fresnel);
+        c.red = factor * (fma(p->red, base, metal) + ks * red);
+        c.green = factor * (fma(p->green, base, metal) + ks * green);
+        c.blue = factor * (fma(p->blue, base, metal) + ks * blue);
+        return c;
+#else
+        const REAL dielectric = p->specular * fma((REAL)(0.96f), fresnel, (REAL)(0.04f));
+        const REAL kd = (1.0f - p->metallic) * (1.0f - dielectric) * M_1_PI_F;
+        const REAL ks = (1.0f - p->metallic) * dielectric * lobe + p->metallic * lobe * fresnel;
+        const REAL base = kd + p->metallic * lobe * (1.0f - fresnel);
+        c.red = factor * fma(p->red, base, ks);
+        c.green = factor * fma(p->green, base, ks);
+        c.blue = factor * fma(p->blue, base, ks);
+        return c;
+#endif
+    }
+#endif
+    factor *= M_1_PI_F;
+    c.red = factor * p->red;
+    c.green = factor * p->green;
+    c.blue = factor * p->blue;
+    return c;
+}
+
+INLINE REAL NAMED(color_luminance)(NAMED(Color) c) {
+    return 0.2126f * c.red + 0.7152f * c.green + 0.0722f * c.blue;
+}

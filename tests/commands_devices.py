@@ -1,0 +1,118 @@
+# SPDX-License-Identifier: MIT
+"""verify, bench and devices.
+
+usage: commands_devices.py MANYLIGHT SCENES [TEST ...]
+"""
+import json
+import os
+import re
+import subprocess
+import unittest
+
+from program import CommandTest, PROGRAM, SCENES
+
+
+class DeviceTest(CommandTest):
+    def test_verify(self):
+        run = self.run_program("verify", SCENES / "pinhole.glb", "--width", 40)
+        for stage in ("layout", "random", "gbuffer", "clusters", "representatives", "contributions",
+                      "refinement", "pdf", "samples", "accumulate"):
+            self.assertIn(stage, run.stdout)
+        self.assertIn("driver ", run.stdout.splitlines()[0])
+        self.assertIn("No error was found in what this scene tests. Not tested:", run.stdout)
+        self.assertIn("stage reflections", run.stdout)
+        self.assertNotIn("computes correctly", run.stdout)
+        self.assertNotIn("FAIL", run.stdout)
+
+    def test_verify_everything(self):
+        run = self.run_program("verify", "--width", 40, "--json", "verify.json")
+        self.assertIn("driver ", run.stdout.splitlines()[0])
+        self.assertEqual(run.stdout.splitlines()[-1], "The device computes correctly.")
+        found = json.loads((self.folder / "verify.json").read_text())
+        for name in ("device", "platform", "opencl", "driver", "version"):
+            self.assertTrue(found[name], name)
+        self.assertEqual((found["verdict"], found["not_tested"]), ("correct", []))
+        check = found["scenes"][0]["checks"][0]
+        for name in ("stage", "items", "telling", "failed", "borderline", "largest", "tolerance"):
+            self.assertIn(name, check)
+        self.assertEqual(check["verdict"], "pass")
+        kernels = SCENES.parent / "kernels"
+        expected = set()
+        for path in kernels.rglob("*.cl"):
+            text = path.read_text()
+            if '#include "lib/samples.h"' in text:
+                text += (kernels / "lib" / "samples.h").read_text()
+            file = path.relative_to(kernels).as_posix()
+            expected |= {(file, name) for name in re.findall(r"^KERNEL void (\w+)", text, re.M)}
+        self.assertEqual({(k["file"], k["kernel"]) for k in found["kernels"]}, expected)
+        states = {k["kernel"]: k["state"] for k in found["kernels"]}
+        self.assertEqual(states["adaptive_draw"], "tested")
+        self.assertEqual(states["gbuffer_trace_rays"], "tested")
+        self.assertNotIn("not tested", states.values())
+
+    def test_verify_json(self):
+        run = self.run_program("verify", SCENES / "pinhole.glb", "--width", 24, "--json", "-")
+        found = json.loads(run.stdout)
+        self.assertEqual(found["verdict"], "incomplete")
+        self.assertIn("stage reflections", found["not_tested"])
+        self.refuse("verify", "--camera", "front", words=["--camera", "file"])
+        self.refuse("verify", "--json", "none/a.json", words=["--json", "none"])
+        self.refuse("verify", "", words=["name is empty"])
+
+    def test_bench(self):
+        run = self.run_program("bench", SCENES / "pinhole.glb", "--height", 48, "--rounds", 1,
+                               "--json", "b.json")
+        self.assertIn("shadow_incoherent", run.stdout)
+        figures = json.loads((self.folder / "b.json").read_text())
+        self.assertEqual(sorted(figures["rays"]),
+                         ["primary", "shadow_coherent", "shadow_incoherent"])
+        self.assertGreater(figures["rays"]["primary"]["packets"]["mrays_per_s"], 0)
+        self.assertGreater(figures["stages"]["shadows"]["seconds"], 0)
+        if "embree" in figures:
+            ratio = figures["ratios"]["shadow_incoherent"]
+            low, high = ratio["over_single_quartiles"]
+            self.assertTrue(low <= ratio["over_single"] <= high)
+            self.assertGreater(ratio["over_best"], 0)
+        run = self.run_program("bench", SCENES / "pinhole.glb", "--loading", "--json", "b.json")
+        self.assertIn("tinygltf alone", run.stdout)
+        loading = json.loads((self.folder / "b.json").read_text())["loading"]
+        self.assertGreater(loading["load_s"], 0)
+        self.assertGreater(loading["ratio"], 0)
+        self.assertGreater(loading["peak_over_file"], 1)
+        self.refuse("bench", "traversal", "--loading", words=["--loading", "traversal"])
+        self.refuse("bench", "none.glb", words=["none.glb"])
+        self.refuse("bench", SCENES / "pinhole.glb", "--mesh", "x.glb", words=["--mesh", "x.glb"])
+        self.refuse("bench", SCENES / "pinhole.glb", "--view", "far", words=["--view", "far"])
+        self.refuse("bench", "stages", "--camera", "far", words=["--camera", "far"])
+        copy = self.folder / "copy.glb"
+        copy.write_bytes((SCENES / "pinhole.glb").read_bytes())
+        self.refuse("bench", copy, "--json", copy, words=["--json", "copy.glb"])
+        self.refuse("bench", "traversal", "--view", "above", words=["--view", "above"])
+        self.refuse("bench", "traversal", "--json", "no/x.json", words=["--json", "no/x.json"])
+        self.assertEqual(self.files(), ["b.json", "copy.glb"])
+
+    def test_devices(self):
+        run = self.run_program("devices")
+        self.assertIn("0: ", run.stdout)
+        self.assertIn("(default)", run.stdout)
+
+    def test_samplers(self):
+        lines = self.run_program("samplers").stdout.splitlines()
+        rows = json.loads(self.run_program("samplers", "--json").stdout)
+        self.assertEqual([line.split()[0] for line in lines], [row["name"] for row in rows])
+        self.assertEqual([row["name"] for row in rows if row["biased"]], ["contribution"])
+        self.assertEqual(len({row["color"] for row in rows}), len(rows))
+        for row, line in zip(rows, lines):
+            self.assertRegex(row["color"], "^#[0-9a-f]{6}$")
+            self.assertIn(row["summary"], line)
+        self.refuse("render", self.cornell, "--sampler", "best",
+                    words=["--sampler best", *(row["name"] for row in rows)])
+
+    def test_an_empty_cache_folder_is_none(self):
+        run = subprocess.run([PROGRAM, "devices"], capture_output=True, text=True,
+                             env={**os.environ, "POCL_CACHE_DIR": ""})
+        self.assertEqual(run.returncode, 0, run.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()
