@@ -73,7 +73,7 @@ def main():
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
         number = 0
-        while (kills < options.kills or resumed * 2 < kills) and number < 10 * options.kills:
+        while (kills < options.kills or resumed * 2 < options.kills) and number < 10 * options.kills:
             scene, *more = RENDERS[number % len(RENDERS)]
             number += 1
             arguments = ["render", str(scenes / f"{scene}.glb"), "-q", "--height", "64", *more]
@@ -100,7 +100,7 @@ def main():
             (folder / "state").unlink()
     print(f"{kills} kills, {resumed} of them with a checkpoint to go on from: all {number} images "
           "equal to those of renders without a break")
-    if kills < options.kills or resumed * 2 < kills:
+    if kills < options.kills or resumed * 2 < options.kills:
         sys.exit("too few of them")
 
 

@@ -12,8 +12,13 @@
 #pragma clang diagnostic ignored "-Wpsabi"
 #endif
 
-// For functions that take vectors by value, which some registers are too small for.
+// For functions that take vectors by value, which some registers are too small for. A plain number
+// fits: there the compiler chooses (and Oclgrind can run what it leaves alone).
+#if LANES == 1
+#define INLINE static inline
+#else
 #define INLINE static inline __attribute__((always_inline))
+#endif
 
 #define JOIN_TOKENS(a, b) a##b
 #define JOIN(a, b) JOIN_TOKENS(a, b)
