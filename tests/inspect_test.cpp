@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // What `manylight inspect` reports of a pixel, against images and against simulated draws.
-#include "pipeline/inspect.hpp"
+#include "explain/inspect.hpp"
 
 #include <cmath>
 #include <random>

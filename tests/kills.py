@@ -73,7 +73,8 @@ def main():
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
         number = 0
-        while (kills < options.kills or resumed * 2 < options.kills) and number < 10 * options.kills:
+        most = 10 * options.kills  # renders
+        while (kills < options.kills or resumed * 2 < options.kills) and number < most:
             scene, *more = RENDERS[number % len(RENDERS)]
             number += 1
             arguments = ["render", str(scenes / f"{scene}.glb"), "-q", "--height", "64", *more]

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "commands/commands.hpp"
-#include "pipeline/inspect.hpp"
+#include "explain/inspect.hpp"
 
 namespace manylight {
 

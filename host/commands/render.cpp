@@ -13,9 +13,9 @@
 #include "commands/render_facts.hpp"
 #include "commands/render_files.hpp"
 #include "error.hpp"
+#include "explain/top_lights.hpp"
 #include "pipeline/aov.hpp"
 #include "pipeline/frame.hpp"
-#include "pipeline/top_lights.hpp"
 #include "print.hpp"
 #include "signals.hpp"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "pipeline/top_lights.hpp"
+#include "explain/top_lights.hpp"
 
 #include <fmt/format.h>
 

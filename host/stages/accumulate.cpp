@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "stages/accumulate.hpp"
 
-#include "samplers/adaptive/adaptive_samples.hpp"
+#include "stages/samples.hpp"
 
 namespace manylight {
 namespace {

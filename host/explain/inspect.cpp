@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "pipeline/inspect.hpp"
+#include "explain/inspect.hpp"
 
 #include <algorithm>
 #include <cmath>
