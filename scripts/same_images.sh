@@ -16,16 +16,20 @@ folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 differing=0
 samplers=$("$new" samplers | cut -d' ' -f1)
-hash_of() { oiiotool -v --hash "$1" | grep SHA-1 | md5sum; }
+hash_of() { oiiotool -v --hash "$1" | grep SHA-1; }
 
 for scene in "$@"; do
     for sampler in $samplers; do
         for options in "" "--pixel-centre --light-samples 5" "--target-error 0.5 --memory 24M"; do
             common=(render "$scene" --height 40 --spp 6 --sampler "$sampler" --seed 3 -q)
             read -ra more <<<"$options"
-            "$old" "${common[@]}" "${more[@]}" -o "$folder/old.exr" 2>/dev/null
-            "$new" "${common[@]}" "${more[@]}" -o "$folder/new.exr" 2>/dev/null
-            if [[ $(hash_of "$folder/old.exr") != "$(hash_of "$folder/new.exr")" ]]; then
+            "$old" "${common[@]}" "${more[@]}" -o "$folder/old.exr" 2>"$folder/log" ||
+                { cat "$folder/log" >&2; exit 2; }
+            "$new" "${common[@]}" "${more[@]}" -o "$folder/new.exr" 2>"$folder/log" ||
+                { cat "$folder/log" >&2; exit 2; }
+            before=$(hash_of "$folder/old.exr")
+            after=$(hash_of "$folder/new.exr")
+            if [[ "$before" != "$after" ]]; then
                 echo "$scene, $sampler $options: other pixels"
                 differing=1
             fi

@@ -3,6 +3,7 @@
 
 #include "samplers/contribution/contribution.hpp"
 #include "support.hpp"
+#include "verify/sampler_checks.hpp"
 
 namespace manylight {
 namespace {
@@ -41,6 +42,63 @@ TEST(pdf, agrees_with_the_reference) {
         test::expect_pass(verifier.pdf("power", {.power = 1}, false));
         test::expect_pass(verifier.pdf("contribution", paper_shares, true));
         test::expect_pass(verifier.pdf("contribution-defensive", defensive_shares, true));
+    }
+}
+
+// What samplers draw from is mixed as their pages say.
+TEST(pdf, samplers_have_their_own_shares) {
+    const test::TestScene& s = test::scene_named("points");
+    const Tiles tiles = all_tiles(32, 32, 16);
+    ClusterOptions options;
+    options.tile_size = 16;
+    FOR_EACH_DEVICE(each) {
+        Device device = each;
+        const WideBvh bvh = build_wide_bvh(s.scene, 8, 8, 10);
+        const DeviceScene uploaded = upload_scene(device, s.scene, bvh, s.camera);
+        Buffer<Surface> surfaces = device.allocate<Surface>(item_count(tiles));
+        GBufferStage(device, uploaded).trace(tiles, {}, surfaces);
+        const auto tables_of = [&](const char* name) {
+            const std::unique_ptr<LightSampler> sampler = find_sampler(name).make(
+                {device, uploaded, s.scene.lights, tiles.count, 16, 32, 1, options});
+            sampler->prepare();
+            sampler->begin(tiles, surfaces, 1, [](std::size_t) {});
+            return HostTables(*sampler);
+        };
+        const auto expect_clustered = [&](const char* name, const Shares& shares, bool weighed) {
+            options.shadow.weighed = weighed;
+            Clustering clustering(device, uploaded, options, tiles.count);
+            clustering.build(tiles, surfaces, [](std::size_t) {});
+            const std::vector<float> matrix = clustering.matrix().values.as<float>().download();
+            const HostTables found = tables_of(name);
+            EXPECT_EQ(found.item_rows, clustering.item_rows()) << name;
+            const std::size_t lights = s.scene.lights.size();
+            for (std::size_t row = 0; row < clustering.regions().size(); ++row) {
+                const std::vector<double> expected = reference::probabilities(
+                    std::span(matrix).subspan(row * lights, lights), clustering.totals()[row],
+                    s.scene.lights, mixture_of(shares, s.scene.lights));
+                for (std::size_t y = 0; y < lights; ++y) {
+                    const uint before = y > 0 ? found.cdf[row * lights + y - 1] : 0;
+                    EXPECT_NEAR((found.cdf[row * lights + y] - before) / double{CDF_SCALE},
+                                expected[y], 1e-6)
+                        << name;
+                }
+            }
+        };
+        expect_clustered("contribution", {.visible = 1}, false);
+        expect_clustered("contribution-defensive",
+                         {.visible = 0.4f, .unshadowed = 0.5f, .power = 0.1f}, true);
+        double power = 0;
+        for (const Light& light : s.scene.lights) power += double{light.emission.w};
+        for (const char* name : {"power", "ris"}) {
+            uint before = 0;
+            const HostTables found = tables_of(name);
+            for (std::size_t y = 0; y < s.scene.lights.size(); ++y) {
+                EXPECT_NEAR((found.power_cdf[y] - before) / double{CDF_SCALE},
+                            s.scene.lights[y].emission.w / power, 1e-6)
+                    << name;
+                before = found.power_cdf[y];
+            }
+        }
     }
 }
 

@@ -15,8 +15,20 @@ namespace {
 // A kernel's parameter's text, without what some drivers add.
 std::string trimmed(std::string text) {
     while (!text.empty() && text.back() == '\0') text.pop_back();
-    if (text.starts_with("struct ")) text.erase(0, 7);
-    return text;
+    static const std::regex extra(
+        R"(\b(struct|const|__global|global) | ?addrspace\(\d+\)| (?=\*))");
+    text = std::regex_replace(text, extra, "");
+    static const std::regex unsigned_int("unsigned int|unsigned");
+    return std::regex_replace(text, unsigned_int, "uint");
+}
+
+// Not every driver knows the types.
+std::string type_of(const cl::Kernel& kernel, cl_uint parameter) {
+    try {
+        return trimmed(kernel.getArgInfo<CL_KERNEL_ARG_TYPE_NAME>(parameter));
+    } catch (const cl::Error&) {
+        return "";
+    }
 }
 
 // Of a type of elements the number's: of "float", "float4" and "float_n", "float".
@@ -96,8 +108,8 @@ void Kernel::Built::build() {
         kernel = cl::Kernel(context->build(file, options), name.c_str());
         const auto count = kernel.getInfo<CL_KERNEL_NUM_ARGS>();
         for (cl_uint i = 0; i < count; ++i) {
-            parameters.push_back({trimmed(kernel.getArgInfo<CL_KERNEL_ARG_NAME>(i)),
-                                  trimmed(kernel.getArgInfo<CL_KERNEL_ARG_TYPE_NAME>(i))});
+            parameters.push_back(
+                {trimmed(kernel.getArgInfo<CL_KERNEL_ARG_NAME>(i)), type_of(kernel, i)});
         }
     } catch (const cl::Error& error) {
         throw RuntimeError("{}: {}: {}", context->info.name, name, describe(error));

@@ -60,7 +60,7 @@ using RayCount = std::function<void(std::size_t)>;
 /// pixels that have all of theirs, if pixels are finished by passes. Says whether to go on.
 using Sink = std::function<bool(const std::optional<Pass>& finished, std::size_t samples)>;
 
-/// A sampler at work on one batch of tiles after another. The scene has lights.
+/// A sampler at work on one batch of tiles after another. What is called has lights to draw.
 class LightSampler {
   public:
     LightSampler() = default;
@@ -102,7 +102,7 @@ class LightSampler {
 struct Sampler {
     std::string_view name;
     std::string_view summary;  // one line for help
-    std::string_view color;    // on charts, #rrggbb
+    std::string_view color;    // in plots of many charts, #rrggbb
     bool biased = false;
     bool all_lights = false;  // light sample i is light i
     bool tree = false;        // needs the light tree

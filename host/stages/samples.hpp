@@ -18,7 +18,7 @@ struct Estimates {
     Buffer<float4> residuals;  // of the sums, see kernels/lib/sum.h
 };
 
-/// Pixels of a pass over `tiles` tiles.
+/// Pixels of a pass over its tiles.
 [[nodiscard]] inline std::size_t pass_pixels(const Pass& pass) {
     return std::size_t{pass.tile_count} * CELLS_PER_TILE * pass.count;
 }

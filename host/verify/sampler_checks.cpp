@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "verify/sampler_checks.hpp"
 
+#include <algorithm>
+
 #include "samplers/one_light/one_light.hpp"
 #include "samplers/rows.hpp"
 
@@ -14,7 +16,8 @@ const SamplerChecks& checks_of(const Sampler& sampler) {
 #define MAKE_ROW(name) checks_##name(),
     static const SamplerChecks checks[] = {MANYLIGHT_SAMPLERS(MAKE_ROW)};
 #undef MAKE_ROW
-    return checks[&sampler - all_samplers().data()];
+    const std::span<const Sampler> all = all_samplers();
+    return checks[std::ranges::find(all, sampler.name, &Sampler::name) - all.begin()];
 }
 
 HostTables::HostTables(const LightSampler& sampler) {

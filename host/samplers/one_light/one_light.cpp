@@ -15,7 +15,9 @@ bool OneLight::draw(const Tiles& tiles, const PixelSample& sample, uint light_sa
 
 Footprint OneLight::footprint(const SamplerLoad& load) {
     Footprint out;
-    out.tile = std::size_t{load.tile_size} * load.tile_size * SampleStage::item_bytes();
+    const std::size_t items = std::size_t{load.tile_size} * load.tile_size;
+    out.tile = items * SampleStage::item_bytes();
+    out.tile_buffer = items * 64 * sizeof(float);  // rays
     return out;
 }
 
