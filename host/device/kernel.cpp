@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <cxxabi.h>
 
-#include <regex>
 #include <stdexcept>
 
 #include "clock.hpp"
@@ -12,14 +11,18 @@
 namespace manylight {
 namespace {
 
-// A kernel's parameter's text, without what some drivers add.
+void replace(std::string& text, std::string_view old, std::string_view by) {
+    for (std::size_t at = text.find(old); at != std::string::npos; at = text.find(old, at))
+        text.replace(at, old.size(), by);
+}
+
+// A kernel's parameter's name or type, without what some drivers add.
 std::string trimmed(std::string text) {
     while (!text.empty() && text.back() == '\0') text.pop_back();
-    static const std::regex extra(
-        R"(\b(struct|const|__global|global) | ?addrspace\(\d+\)| (?=\*))");
-    text = std::regex_replace(text, extra, "");
-    static const std::regex unsigned_int("unsigned int|unsigned");
-    return std::regex_replace(text, unsigned_int, "uint");
+    for (const char* word : {"struct ", "const ", "__global "}) replace(text, word, "");
+    replace(text, " *", "*");
+    replace(text, "unsigned int", "uint");
+    return text;
 }
 
 // Not every driver knows the types.
@@ -52,17 +55,13 @@ std::string opencl_name(const std::type_info& type) {
     char* text = abi::__cxa_demangle(type.name(), nullptr, nullptr, &status);
     std::string name = text != nullptr ? text : type.name();
     std::free(text);
-    std::smatch vector;
-    static const std::regex glm_vector("glm::vec<([0-9]), (.*), .*>");
-    static const std::regex array("std::array<(.*), ([0-9])ul>");
     std::string lanes;
-    const std::string whole = name;
-    if (std::regex_match(whole, vector, glm_vector)) {
-        lanes = vector[1];
-        name = vector[2];
-    } else if (std::regex_match(whole, vector, array)) {
-        lanes = vector[2];
-        name = vector[1];
+    if (name.starts_with("glm::vec<")) {  // "glm::vec<4, float, (glm::qualifier)0>"
+        lanes = name.substr(9, 1);
+        name = name.substr(12, name.find(',', 12) - 12);
+    } else if (name.starts_with("std::array<")) {  // "std::array<unsigned int, 4ul>"
+        lanes = name.substr(name.find(',') + 2, 1);
+        name = name.substr(11, name.find(',') - 11);
     }
     if (name == "unsigned int") name = "uint";
     if (name == "unsigned char") name = "uchar";
