@@ -11,18 +11,17 @@
 namespace manylight {
 namespace {
 
-void replace(std::string& text, std::string_view old, std::string_view by) {
-    for (std::size_t at = text.find(old); at != std::string::npos; at = text.find(old, at))
-        text.replace(at, old.size(), by);
+void erase_all(std::string& text, std::string_view word) {
+    for (std::size_t at = text.find(word); at != std::string::npos; at = text.find(word))
+        text.erase(at, word.size());
 }
 
 // A kernel's parameter's name or type, without what some drivers add.
 std::string trimmed(std::string text) {
     while (!text.empty() && text.back() == '\0') text.pop_back();
-    for (const char* word : {"struct ", "const ", "__global "}) replace(text, word, "");
-    replace(text, " *", "*");
-    replace(text, "unsigned int", "uint");
-    return text;
+    for (const char* word : {"struct ", "const ", "__global "}) erase_all(text, word);
+    const std::string_view number = "unsigned int";
+    return text.starts_with(number) ? fmt::format("uint{}", text.substr(number.size())) : text;
 }
 
 // Not every driver knows the types.
@@ -52,10 +51,11 @@ bool takes(std::string_view parameter, std::string_view type, bool is_buffer) {
 
 std::string opencl_name(const std::type_info& type) {
     int status = 0;
-    char* text = abi::__cxa_demangle(type.name(), nullptr, nullptr, &status);
-    std::string name = text != nullptr ? text : type.name();
+    char* const text = abi::__cxa_demangle(type.name(), nullptr, nullptr, &status);
+    const std::string whole = text != nullptr ? text : type.name();
     std::free(text);
-    std::string lanes;
+    std::string_view name = whole;
+    std::string_view lanes;
     if (name.starts_with("glm::vec<")) {  // "glm::vec<4, float, (glm::qualifier)0>"
         lanes = name.substr(9, 1);
         name = name.substr(12, name.find(',', 12) - 12);
@@ -65,8 +65,9 @@ std::string opencl_name(const std::type_info& type) {
     }
     if (name == "unsigned int") name = "uint";
     if (name == "unsigned char") name = "uchar";
-    const std::size_t space = name.rfind("::");
-    return (space == std::string::npos ? name : name.substr(space + 2)) + lanes;
+    if (const std::size_t space = name.rfind("::"); space != std::string_view::npos)
+        name.remove_prefix(space + 2);
+    return fmt::format("{}{}", name, lanes);
 }
 
 Arguments& Arguments::put(std::string name, Content content, const std::string& type) {
