@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <bit>
 
+#include "reference/pdf.hpp"
 #include "samplers/contribution/contribution.hpp"
 #include "support.hpp"
 #include "verify/sampler_checks.hpp"
