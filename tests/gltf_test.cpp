@@ -794,6 +794,11 @@ TEST(gltf, animated_by_pointers) {
     for (const char* pointer : {"/nodes/7/translation", "/nodes/x/translation", "/materials/~3"})
         EXPECT_THROW((void)at(pointer, vectors), InputError) << pointer;
     EXPECT_THROW((void)at("/cameras/0/perspective/yfov", numbers), InputError);
+    for (const json& wrong : {json(5125), json("/nodes/0/translation"), json({{"pointer", 3}})}) {
+        file.document["animations"][0]["channels"][0]["target"]["extensions"]
+                     ["KHR_animation_pointer"] = wrong;
+        EXPECT_THROW((void)file.load(2.0), InputError) << wrong;
+    }
     // What it makes of a value is checked as the value is.
     const int negative = file.add_floats({-4, -4}, "SCALAR", 2);
     EXPECT_THROW((void)at("/extensions/KHR_lights_punctual/lights/0/intensity", negative),

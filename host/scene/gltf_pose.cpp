@@ -136,7 +136,11 @@ void point_animation(GltfFile& file, double seconds) {
         if (target.value("path", "") != "pointer" || !target.contains("extensions") ||
             !target["extensions"].contains(pointer_extension))
             continue;
-        const std::string pointer = target["extensions"][pointer_extension].value("pointer", "");
+        const json& extension = target["extensions"][pointer_extension];
+        if (!extension.is_object() || !extension.value("pointer", json("")).is_string())
+            throw InputError("{}: animations[0]: {} {} has no pointer that is a string", file.path,
+                             pointer_extension, extension.dump().substr(0, 80));
+        const std::string pointer = extension.value("pointer", "");
         if (can_point_to(pointer)) targets.emplace_back(pointer, channel["sampler"].get<int>());
     }
     if (targets.empty()) return;
