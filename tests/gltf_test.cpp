@@ -799,6 +799,8 @@ TEST(gltf, animated_by_pointers) {
                      ["KHR_animation_pointer"] = wrong;
         EXPECT_THROW((void)file.load(2.0), InputError) << wrong;
     }
+    file.document["animations"][0]["channels"][0]["target"]["path"] = -1;
+    EXPECT_THROW((void)file.load(2.0), InputError);
     // What it makes of a value is checked as the value is.
     const int negative = file.add_floats({-4, -4}, "SCALAR", 2);
     EXPECT_THROW((void)at("/extensions/KHR_lights_punctual/lights/0/intensity", negative),

@@ -131,17 +131,22 @@ void point_animation(GltfFile& file, double seconds) {
     using nlohmann::json;
     if (!file.json.contains("animations") || file.json["animations"].empty()) return;
     std::vector<std::pair<std::string, int>> targets;  // pointers and samplers
+    std::size_t number = 0;
     for (const json& channel : file.json["animations"][0]["channels"]) {
-        const json& target = channel["target"];
-        if (target.value("path", "") != "pointer" || !target.contains("extensions") ||
-            !target["extensions"].contains(pointer_extension))
-            continue;
-        const json& extension = target["extensions"][pointer_extension];
-        if (!extension.is_object() || !extension.value("pointer", json("")).is_string())
-            throw InputError("{}: animations[0]: {} {} has no pointer that is a string", file.path,
-                             pointer_extension, extension.dump().substr(0, 80));
-        const std::string pointer = extension.value("pointer", "");
-        if (can_point_to(pointer)) targets.emplace_back(pointer, channel["sampler"].get<int>());
+        try {
+            const json& target = channel.at("target");
+            if (target.value("path", "") == "pointer" && target.contains("extensions") &&
+                target["extensions"].contains(pointer_extension)) {
+                const std::string pointer =
+                    target["extensions"][pointer_extension].value("pointer", "");
+                if (can_point_to(pointer))
+                    targets.emplace_back(pointer, channel.at("sampler").get<int>());
+            }
+        } catch (const json::exception&) {
+            throw InputError("{}: animations[0].channels[{}]: {} is of another form than glTF's",
+                             file.path, number, channel.dump().substr(0, 200));
+        }
+        ++number;
     }
     if (targets.empty()) return;
     const tinygltf::Model model = parse_gltf(file);
