@@ -205,7 +205,7 @@ bool page_tells_of_negative_values(std::string_view sampler) {
 const std::map<std::string, double, std::less<>> exceptions = {
     {"glossy --roughness 0.03", 1.8}, {"hidden --visible 0.01", 30},
     {"hidden --visible 0.001", 250},  {"stacks --stack 64", 7},
-    {"stacks --stack 512", 5},        {"1 light sample", 3.5}};
+    {"stacks --stack 512", 5},        {"1 light sample", 3}};
 constexpr double most_ratio = 1.2;  // of adaptive's error to the best other sampler's
 
 constexpr std::size_t few_lights = 200;

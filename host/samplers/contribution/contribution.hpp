@@ -28,8 +28,6 @@ class ByContribution : public OneLight {
 
     [[nodiscard]] static Footprint footprint(const SamplerLoad& load);
 
-    [[nodiscard]] const Clustering& clustering() const { return *clustering_; }
-
   private:
     ClusterOptions options_;
     double light_count_;
