@@ -66,7 +66,7 @@ TEST(builtin, scenes_take_their_numbers) {
 // At both ends of a sweep there is a scene, and another one than usual.
 TEST(builtin, sweeps_have_ends) {
     for (const Builtin& scene : all_builtins())
-        for (const Parameter& p : scene.parameters) {
+        for (const SceneParameter& p : scene.parameters) {
             const std::string name(scene.name);
             SCOPED_TRACE(fmt::format("{} --{}", name, p.name));
             EXPECT_GE(p.usual, p.least());

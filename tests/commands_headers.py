@@ -126,6 +126,25 @@ class HeaderTest(CommandTest):
         self.run_program("render", "--like", "c.exr", "--aov", "error", "-o", "d.exr", "-q")
         self.run_program("render", "--like", "d.exr", "-o", "d.png", "-q")
 
+    def test_parameters_of_samplers_are_repeated(self):
+        for row in json.loads(self.run_program("samplers", "--json").stdout):
+            self.refuse("render", self.cornell, "--sampler", row["name"], "--set", "foo=1",
+                        words=["--set foo=1", row["name"], "no such parameter"])
+            if not row["parameters"]:
+                continue
+            p = row["parameters"][0]
+            value = p["most"] if p["value"] != p["most"] else p["least"]
+            self.refuse("render", self.cornell, "--sampler", row["name"], "--set",
+                        f"{p['name']}={p['most'] + 1}", words=[p["name"], f"to {p['most']:g}"])
+            shape = ("--height", 16, "--spp", 1, "--emitter-points", 0)
+            self.run_program("render", self.cornell, "--sampler", row["name"], *shape, "--set",
+                             f"{p['name']}={value}", "-o", "a.exr", "-q")
+            self.run_program("render", "--like", "a.exr", "-o", "b.exr", "-q")
+            before, after = self.headers("a.exr", "b.exr")
+            self.assertEqual(after["pixels"], before["pixels"])
+            self.assertEqual(after["set"], before["set"])
+            self.assertIn(f"{p['name']}={value:g}", after["set"])
+
     def test_like_says_what_it_cannot_repeat(self):
         self.write_lamp()
         self.run_program("render", "lamp.gltf", "--height", 8, "-o", "a.exr", "-q")

@@ -58,29 +58,31 @@ TEST(pdf, samplers_have_their_own_shares) {
         const DeviceScene uploaded = upload_scene(device, s.scene, bvh, s.camera);
         Buffer<Surface> surfaces = device.allocate<Surface>(item_count(tiles));
         GBufferStage(device, uploaded).trace(tiles, {}, surfaces);
-        const auto tables_of = [&](const char* name) {
-            const std::unique_ptr<LightSampler> sampler = find_sampler(name).make(
-                {device, uploaded, s.scene.lights, tiles.count, 16, 32, 1, options});
+        const auto tables = [&](const char* name) {
+            const std::unique_ptr<LightSampler> sampler =
+                find_sampler(name).make({device, uploaded, s.scene.lights, tiles.count, 16, 32, 1,
+                                         options, values_of(find_sampler(name))});
             sampler->prepare();
             sampler->begin(tiles, surfaces, 1, [](std::size_t) {});
-            return HostTables(*sampler);
+            return tables_of(*sampler);
         };
         const auto expect_clustered = [&](const char* name, const Shares& shares, bool weighed) {
             options.shadow.weighed = weighed;
             Clustering clustering(device, uploaded, options, tiles.count);
             clustering.build(tiles, surfaces, [](std::size_t) {});
             const std::vector<float> matrix = clustering.matrix().values.as<float>().download();
-            const HostTables found = tables_of(name);
-            EXPECT_EQ(found.item_rows, clustering.item_rows()) << name;
+            const Arguments found = tables(name);
+            EXPECT_EQ(found.download<uint>("item_rows"), clustering.item_rows()) << name;
+            const std::vector<uint> cdf = found.download<uint>("cdf");
             const std::size_t lights = s.scene.lights.size();
             for (std::size_t row = 0; row < clustering.regions().size(); ++row) {
                 const std::vector<double> expected = reference::probabilities(
                     std::span(matrix).subspan(row * lights, lights), clustering.totals()[row],
                     s.scene.lights, mixture_of(shares, s.scene.lights));
                 for (std::size_t y = 0; y < lights; ++y) {
-                    const uint before = y > 0 ? found.cdf[row * lights + y - 1] : 0;
-                    EXPECT_NEAR((found.cdf[row * lights + y] - before) / double{CDF_SCALE},
-                                expected[y], 1e-6)
+                    const uint before = y > 0 ? cdf[row * lights + y - 1] : 0;
+                    EXPECT_NEAR((cdf[row * lights + y] - before) / double{CDF_SCALE}, expected[y],
+                                1e-6)
                         << name;
                 }
             }
@@ -92,12 +94,12 @@ TEST(pdf, samplers_have_their_own_shares) {
         for (const Light& light : s.scene.lights) power += double{light.emission.w};
         for (const char* name : {"power", "ris"}) {
             uint before = 0;
-            const HostTables found = tables_of(name);
+            const std::vector<uint> cdf = tables(name).download<uint>("power_cdf");
             for (std::size_t y = 0; y < s.scene.lights.size(); ++y) {
-                EXPECT_NEAR((found.power_cdf[y] - before) / double{CDF_SCALE},
+                EXPECT_NEAR((cdf[y] - before) / double{CDF_SCALE},
                             s.scene.lights[y].emission.w / power, 1e-6)
                     << name;
-                before = found.power_cdf[y];
+                before = cdf[y];
             }
         }
     }

@@ -72,7 +72,8 @@ constexpr std::size_t most_lights = 20'000;  // more are too slow to be drawn al
 
 // The value in the middle of a sweep, and the last but one, or the last before it that has few
 // enough lights.
-std::vector<std::unique_ptr<Point>> points_of(const Builtin& scene, const Parameter& parameter) {
+std::vector<std::unique_ptr<Point>> points_of(const Builtin& scene,
+                                              const SceneParameter& parameter) {
     std::vector<std::unique_ptr<Point>> out;
     const std::size_t count = parameter.sweep.size();
     for (std::size_t i : {(count - 1) / 2, count - 2})
@@ -292,7 +293,7 @@ TEST(stability, every_sampler_on_every_sweep) {
     int points = 0;
     int seen = 0;  // where the test sees the paper's sampler's bias
     for (const Builtin& scene : all_builtins())
-        for (const Parameter& parameter : scene.parameters)
+        for (const SceneParameter& parameter : scene.parameters)
             for (const auto& point : points_of(scene, parameter)) {
                 ++points;
                 if (judge(*point) < 1e-6) ++seen;

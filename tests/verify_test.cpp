@@ -166,7 +166,7 @@ TEST(verify, tells_a_wrong_device) {
         for (const Check& check : found.scenes[0].checks)
             if (!check.passed()) failed.insert(check.stage);
         for (const Sampler& s : all_samplers())
-            if (checks_of(s).choose_light != nullptr) {
+            if (checks_of(s).reference != nullptr) {
                 EXPECT_TRUE(failed.contains(fmt::format("samples ({})", s.name))) << s.name;
             }
         EXPECT_TRUE(failed.contains("contributions"));

@@ -14,7 +14,7 @@ using nlohmann::json;
 
 json to_json(const Builtin& scene) {
     json out = {{"name", scene.name}, {"summary", scene.summary}, {"parameters", json::array()}};
-    for (const Parameter& p : scene.parameters)
+    for (const SceneParameter& p : scene.parameters)
         out["parameters"].push_back({{"name", p.name},
                                      {"summary", p.summary},
                                      {"whole", p.whole},

@@ -12,7 +12,7 @@
 
 #include "reference/gbuffer.hpp"
 #include "reference/random.hpp"
-#include "reference/samples.hpp"
+#include "reference/samplers/lighttree.hpp"
 #include "stages/tiles.hpp"
 
 namespace manylight {
@@ -120,17 +120,16 @@ glm::dvec2 on_light(const std::array<uint, 4>& bits) {
 std::pair<std::vector<double>, std::unordered_map<uint, double>> draw(Points& points,
                                                                       const Scene& scene) {
     const LightTree tree = build_light_tree(scene.lights);
-    reference::Tables tables;
-    tables.tree = &tree;
+    const reference::DownLightTree sampler(tree);
     std::vector<double> totals(points.size(), 0);
     std::unordered_map<uint, double> by_light;
     for (std::size_t p = 0; p < points.size(); ++p) {
         if (points.surface(p).position.w < 0) continue;
         for (uint i = 0; i < samples; ++i) {
             const auto bits = points.random(p, i);
-            const reference::Choice choice = reference::choose_lighttree(
-                tables, {points.scene(), points.camera(), points.surface(p)},
-                {p, i, samples, bits, static_cast<uint>(scene.lights.size())});
+            const reference::Choice choice =
+                sampler.choose({points.scene(), points.camera(), points.surface(p)},
+                               {p, i, samples, bits, static_cast<uint>(scene.lights.size())});
             if (choice.weight == 0) continue;
             const double value = choice.weight * points.luminance(p, choice.light, on_light(bits));
             totals[p] += value;

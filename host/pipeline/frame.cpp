@@ -117,9 +117,9 @@ void Frame::prepare() {
     if (!options_.reflections) uploaded.shading["HAS_REFLECTIONS"] = 0;
     stages_ = std::make_shared<Stages>(device_, uploaded, pixels, options_.estimates_error());
     Stages& s = *stages_;
-    s.sampler =
-        sampler_.make({device_, s.scene, scene_.lights, plan_.tiles_per_batch, options_.tile_size(),
-                       options_.width, options_.most_samples(), options_.clusters});
+    s.sampler = sampler_.make({device_, s.scene, scene_.lights, plan_.tiles_per_batch,
+                               options_.tile_size(), options_.width, options_.most_samples(),
+                               options_.clusters, values_of(sampler_, options_.parameters)});
     if (uploaded.shading.at("HAS_REFLECTIONS") != 0) s.reflections.emplace(device_, s.scene);
     s.surfaces = device_.allocate<Surface>(items);
     if (plan_.centres) s.centres = two_surfaces ? device_.allocate<Surface>(items) : s.surfaces;

@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include "samplers/table.hpp"
+
 namespace manylight {
 namespace {
 
@@ -24,6 +26,8 @@ OptionList image_options(const RenderOptions& options) {
                        {"max-depth", clusters.max_depth},
                        {"normal-threshold", shortest(clusters.normal_threshold)},
                        {"visibility-threshold", shortest(clusters.shadow.threshold)}};
+    const ParameterValues parameters = values_of(find_sampler(options.sampler), options.parameters);
+    if (!parameters.empty()) list.emplace_back("set", text_of(parameters));
     if (options.light_samples > 0) list.emplace_back("light-samples", options.light_samples);
     if (options.target_error > 0)
         list.emplace_back("target-error", options.target_error);

@@ -81,6 +81,7 @@ std::size_t Plan::total_bytes() const {
 Plan make_plan(const DeviceInfo& device, const Scene& scene, const WideBvh& bvh,
                const RenderOptions& options) {
     const Sampler& sampler = find_sampler(options.sampler);
+    const ParameterValues parameters = values_of(sampler, options.parameters);
     const unsigned size = options.tile_size();
     const std::size_t tile_items = std::size_t{size} * size;
     const Tiles tiles = all_tiles(options.width, options.height, size);
@@ -113,8 +114,8 @@ Plan make_plan(const DeviceInfo& device, const Scene& scene, const WideBvh& bvh,
     const bool two_surfaces = plan.centres && options.jitters();
     const std::size_t surface_bytes =
         sizeof(Surface) + (scene.varies_materials() ? sizeof(Material) : 0);
-    const Footprint need =
-        sampler.footprint({lights, tiles.count, size, options.most_samples(), options.clusters});
+    const Footprint need = sampler.footprint(
+        {lights, tiles.count, size, options.most_samples(), options.clusters, parameters});
     const std::size_t tile_bytes =
         need.tile + tile_items * (surface_bytes * (two_surfaces ? 2 : 1) + 2 * sizeof(float4));
     plan.matrix_bytes = need.image;

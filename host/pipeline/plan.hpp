@@ -8,6 +8,7 @@
 #include "bvh/wide.hpp"
 #include "clock.hpp"
 #include "samplers/contribution/options.hpp"
+#include "samplers/parameters.hpp"
 
 namespace manylight {
 
@@ -26,7 +27,8 @@ struct RenderOptions {
     bool hide_emitters = false;  // emitters give light but are black
     bool reflections = true;     // false: all by light samples, without stage reflections
     ClusterOptions clusters;
-    std::size_t memory = 0;  // bytes on the device; 0: half of it, at most 2 GiB
+    ParameterValues parameters;  // of the sampler, as far as they were set
+    std::size_t memory = 0;      // bytes on the device; 0: half of it, at most 2 GiB
     std::vector<std::string> aovs;
 
     static constexpr uint first_samples = 4;

@@ -112,9 +112,9 @@ double draw_scale(const LightTree& tree, std::span<const Entry> list,
     return scale;
 }
 
-PixelDraws draw_pixel(const Drawer& drawer, std::span<const Entry> list, const DrawnPixel& pixel) {
+NodeDraws draw_pixel(const Drawer& drawer, std::span<const Entry> list, const DrawnPixel& pixel) {
     const LightTree& tree = drawer.tree;
-    PixelDraws d;
+    NodeDraws d;
     std::vector<double> weights;
     double sum = 0;
     double estimates_blur = 0;
@@ -160,15 +160,15 @@ float shifted_gradient_noise(uint x, uint y, float shift) {
 
 }  // namespace
 
-std::vector<PixelDraws> draw_nodes(const LightTree& tree, const Scene& scene, const Camera& camera,
-                                   std::span<const uint> cut, std::span<const DrawnPixel> pixels,
-                                   const Budget& budget) {
+std::vector<NodeDraws> draw_nodes(const LightTree& tree, const Scene& scene, const Camera& camera,
+                                  std::span<const uint> cut, std::span<const DrawnPixel> pixels,
+                                  const Budget& budget) {
     const Drawer drawer{tree, scene, camera, budget};
     bool doubt = false;
     const std::vector<Entry> list = refine(drawer, cut, pixels, doubt);
-    std::vector<PixelDraws> out;
+    std::vector<NodeDraws> out;
     for (const DrawnPixel& pixel : pixels) {
-        PixelDraws& d = out.emplace_back();
+        NodeDraws& d = out.emplace_back();
         if (pixel.surface) d = draw_pixel(drawer, list, pixel);
         d.uncertain = d.uncertain || doubt;
     }

@@ -19,7 +19,7 @@ struct Drawn {
 };
 
 /// What a pixel draws.
-struct PixelDraws {
+struct NodeDraws {
     std::vector<Drawn> nodes;  // all that it chooses from, in the trees' order
     std::vector<Drawn> draws;
     glm::dvec3 control{0};  // sum of V^ x estimate over all nodes, cd/m2
@@ -43,10 +43,10 @@ struct DrawnPixel {
 };
 
 /// Draws the nodes of pixels, which share what is refined: as many as the device has lanes.
-[[nodiscard]] std::vector<PixelDraws> draw_nodes(const LightTree& tree, const Scene& scene,
-                                                 const Camera& camera, std::span<const uint> cut,
-                                                 std::span<const DrawnPixel> pixels,
-                                                 const Budget& budget);
+[[nodiscard]] std::vector<NodeDraws> draw_nodes(const LightTree& tree, const Scene& scene,
+                                                const Camera& camera, std::span<const uint> cut,
+                                                std::span<const DrawnPixel> pixels,
+                                                const Budget& budget);
 
 /// A light of a node.
 struct Descent {

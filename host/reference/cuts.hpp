@@ -7,6 +7,7 @@
 
 #include "reference/node_estimate.hpp"
 #include "reference/tracing.hpp"
+#include "shared/tiles.h"
 
 namespace manylight::reference {
 

@@ -1,30 +1,14 @@
 // SPDX-License-Identifier: MIT
+// Stage samples: what a sampler is to its scalar references, one file each in samplers/.
 #pragma once
 
 #include <array>
+#include <optional>
 #include <span>
 
-#include "light_tree/light_tree.hpp"
 #include "reference/shading.hpp"
-#include "shared/tiles.h"
 
 namespace manylight::reference {
-
-/// What a sampler may draw from; a sampler uses what it needs.
-struct Tables {
-    std::span<const uint> power_cdf;  // [light]
-    std::span<const uint> cdf;        // [row * light_count + light]
-    std::span<const uint> item_rows;  // [item]
-    const LightTree* tree = nullptr;
-};
-
-/// A light sample: which light, and 1 / (N p) of paper eq. (2); weight 0: none.
-struct Choice {
-    uint light;
-    double weight;
-    bool borderline = false;  // rounding may have drawn another light
-    double slack = 0;         // what rounding may do to the weight, relative; where asked for
-};
 
 /// A surface point whose lights are drawn.
 struct Point {
@@ -34,32 +18,13 @@ struct Point {
     [[nodiscard]] const Material& material() const { return scene.materials[surface.shading]; }
 };
 
-/// Which light sample is to be drawn, from 128 random bits.
-struct Draw {
-    std::size_t item;
-    uint sample, sample_count;
-    std::array<uint, 4> bits;  // 1 and 2 are the point on a light with area
-    uint light_count;
-    bool judge = false;  // fill the choice's slack (slow)
+/// What is asked of a sampler at a point.
+struct PixelDraws {
+    std::size_t item;  // of the batch
+    uint pixel, pixel_sample, seed;
+    uint sample_count;  // light samples
+    bool judge;         // fill an estimate's slack and borderline (slow)
 };
-
-using ChooseLight = Choice (*)(const Tables& tables, const Point& point, const Draw& draw);
-
-[[nodiscard]] Choice choose_exhaustive(const Tables&, const Point&, const Draw&);
-[[nodiscard]] Choice choose_uniform(const Tables&, const Point&, const Draw&);
-[[nodiscard]] Choice choose_power(const Tables&, const Point&, const Draw&);
-[[nodiscard]] Choice choose_contribution(const Tables&, const Point&, const Draw&);
-[[nodiscard]] Choice choose_ris(const Tables&, const Point&, const Draw&);
-[[nodiscard]] Choice choose_lighttree(const Tables&, const Point&, const Draw&);
-
-/// The probability that one draw at a point of a batch's item is of a light of the scene.
-using LightProbability = double (*)(const Tables& tables, const Point& point, std::size_t item,
-                                    uint light);
-
-[[nodiscard]] double probability_uniform(const Tables&, const Point&, std::size_t, uint);
-[[nodiscard]] double probability_power(const Tables&, const Point&, std::size_t, uint);
-[[nodiscard]] double probability_contribution(const Tables&, const Point&, std::size_t, uint);
-[[nodiscard]] double probability_lighttree(const Tables&, const Point&, std::size_t, uint);
 
 /// One pixel sample's estimate and what rounding may do to it.
 struct Estimate {
@@ -71,10 +36,72 @@ struct Estimate {
     bool uncertain = false;   // rounding may have drawn other lights
 };
 
-/// Stage samples for one item; `judge`: fill slack and borderline (slow).
-[[nodiscard]] Estimate estimate(const Scene& scene, const Tracer& tracer, const Camera& camera,
-                                const Surface& surface, const Tables& tables, ChooseLight choose,
-                                std::size_t item, uint pixel, uint pixel_sample, uint seed,
-                                uint sample_count, bool judge);
+/// The scalar reference of a sampler whose pixels do not depend on each other's draws.
+class Sampler {
+  public:
+    Sampler() = default;
+    Sampler(const Sampler&) = delete;
+    Sampler& operator=(const Sampler&) = delete;
+    virtual ~Sampler() = default;
+
+    /// Stage samples for one item.
+    [[nodiscard]] virtual Estimate estimate(const Tracer& tracer, const Point& point,
+                                            const PixelDraws& draws) const = 0;
+};
+
+/// Which light sample is to be drawn, from 128 random bits.
+struct Draw {
+    std::size_t item;
+    uint sample, sample_count;
+    std::array<uint, 4> bits;  // 1 and 2 are the point on a light with area
+    uint light_count;
+    bool judge = false;  // fill the choice's slack (slow)
+};
+
+/// A light sample: which light, and 1 / (N p) of paper eq. (2); weight 0: none.
+struct Choice {
+    uint light;
+    double weight;
+    bool borderline = false;  // rounding may have drawn another light
+    double slack = 0;         // what rounding may do to the weight, relative; where asked for
+};
+
+/// A sampler that draws lights one at a time.
+class OneLight : public Sampler {
+  public:
+    [[nodiscard]] virtual Choice choose(const Point& point, const Draw& draw) const = 0;
+
+    /// The probability that one draw at a point of a batch's item is of a light of the scene; none
+    /// where it has no closed form.
+    [[nodiscard]] virtual std::optional<double> probability(const Point& /*point*/,
+                                                            std::size_t /*item*/,
+                                                            uint /*light*/) const {
+        return {};
+    }
+
+    [[nodiscard]] Estimate estimate(const Tracer& tracer, const Point& point,
+                                    const PixelDraws& draws) const override;
+};
+
+/// (sample + random / 2^32) / count of `total`: an integer below it, stratified over the samples.
+[[nodiscard]] uint stratified(uint total, uint sample, uint count, uint random);
+
+/// A light by its running sum, and its part of the whole.
+struct Found {
+    uint light;
+    uint width;
+};
+
+/// The light at `target`, which is below the last, of running sums by light.
+[[nodiscard]] Found search(std::span<const uint> cdf, uint target);
+
+/// A draw from running sums by light.
+[[nodiscard]] Choice draw_from(std::span<const uint> cdf, const Draw& draw);
+
+/// The probability of a light by running sums.
+[[nodiscard]] double share_of(std::span<const uint> cdf, uint light);
+
+/// A difference in a decision that single precision may not see.
+constexpr double doubtful_draw = 1e-5;
 
 }  // namespace manylight::reference

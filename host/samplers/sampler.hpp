@@ -11,6 +11,7 @@
 
 #include "output/checkpoint.hpp"
 #include "samplers/contribution/options.hpp"
+#include "samplers/parameters.hpp"
 #include "stages/samples.hpp"
 
 namespace manylight {
@@ -25,6 +26,11 @@ struct SamplerContext {
     unsigned width;      // of the image, pixels
     uint light_samples;  // of a pixel sample, at most
     ClusterOptions clusters;
+    ParameterValues parameters;  // of all that the row has
+
+    [[nodiscard]] double parameter(std::string_view name) const {
+        return parameters.find(name)->second;
+    }
 };
 
 /// Bytes that a sampler takes on the device.
@@ -43,6 +49,11 @@ struct SamplerLoad {
     unsigned tile_size;
     uint light_samples;  // of a pixel sample, at most
     const ClusterOptions& clusters;
+    const ParameterValues& parameters;  // of all that the row has
+
+    [[nodiscard]] double parameter(std::string_view name) const {
+        return parameters.find(name)->second;
+    }
 };
 
 /// The clusters of a batch, on the host.
@@ -110,6 +121,7 @@ struct Sampler {
     bool learns = false;      // from one pixel sample for the next, as long as a batch is in work
     unsigned tile_size = 0;   // pixels of a tile's side; 0: as the options say
     std::size_t most_lights = std::numeric_limits<std::size_t>::max();
+    std::vector<Parameter> parameters = {};
     Footprint (*footprint)(const SamplerLoad& load) = nullptr;
     std::unique_ptr<LightSampler> (*make)(const SamplerContext& context) = nullptr;
 };

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "samplers/table.hpp"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+
 #include "error.hpp"
 #include "samplers/rows.hpp"
 #include "shared/adaptive.h"
@@ -36,6 +40,33 @@ const Sampler& find_sampler(std::string_view name, std::string_view option) {
         names += fmt::format("{}{}", names.empty() ? "" : ", ", sampler.name);
     }
     throw InputError("{} {}: no such sampler (there are: {})", option, name, names);
+}
+
+ParameterValues values_of(const Sampler& sampler, const ParameterValues& set) {
+    ParameterValues values;
+    for (const Parameter& p : sampler.parameters) values.emplace(p.name, p.value);
+    for (const auto& [name, value] : set) {
+        const auto found = std::ranges::find(sampler.parameters, name, &Parameter::name);
+        if (found == sampler.parameters.end()) {
+            std::string names;
+            for (const Parameter& p : sampler.parameters)
+                names += fmt::format("{}{}", names.empty() ? "" : ", ", p.name);
+            throw InputError("--set {}={}: sampler {} has no such parameter ({})", name, value,
+                             sampler.name, names.empty() ? "it has none" : "it has: " + names);
+        }
+        if (!(value >= found->least && value <= found->most))
+            throw InputError("--set {}={}: it is from {} to {}", name, value, found->least,
+                             found->most);
+        values[name] = value;
+    }
+    return values;
+}
+
+std::string text_of(const ParameterValues& values) {
+    std::string text;
+    for (const auto& [name, value] : values)
+        text += fmt::format("{}{}={}", text.empty() ? "" : ",", name, value);
+    return text;
 }
 
 }  // namespace manylight

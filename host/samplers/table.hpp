@@ -26,4 +26,11 @@ struct SamplerChoice {
 [[nodiscard]] const Sampler& find_sampler(std::string_view name,
                                           std::string_view option = "--sampler");
 
+/// The values of all parameters of a sampler: those of `set`, and the defaults. Throws InputError
+/// for one that it does not have, or beyond its limits.
+[[nodiscard]] ParameterValues values_of(const Sampler& sampler, const ParameterValues& set = {});
+
+/// "tau=0.05,certainty=1".
+[[nodiscard]] std::string text_of(const ParameterValues& values);
+
 }  // namespace manylight

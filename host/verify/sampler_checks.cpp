@@ -3,7 +3,6 @@
 
 #include <algorithm>
 
-#include "samplers/one_light/one_light.hpp"
 #include "samplers/rows.hpp"
 
 namespace manylight {
@@ -20,11 +19,8 @@ const SamplerChecks& checks_of(const Sampler& sampler) {
     return checks[std::ranges::find(all, sampler.name, &Sampler::name) - all.begin()];
 }
 
-HostTables::HostTables(const LightSampler& sampler) {
-    const Arguments& tables = dynamic_cast<const OneLight&>(sampler).tables();
-    power_cdf = tables.download<uint>("power_cdf");
-    cdf = tables.download<uint>("cdf");
-    item_rows = tables.download<uint>("item_rows");
+const Arguments& tables_of(const LightSampler& sampler) {
+    return dynamic_cast<const OneLight&>(sampler).tables();
 }
 
 std::vector<Check> check_samples(Verifier& verifier, const Sampler& sampler) {

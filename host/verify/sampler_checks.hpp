@@ -2,37 +2,36 @@
 // What judges a sampler: one row for each of the table.
 #pragma once
 
+#include <memory>
 #include <vector>
 
-#include "samplers/contribution/options.hpp"
+#include "samplers/one_light/one_light.hpp"
 #include "samplers/table.hpp"
 #include "verify/verify.hpp"
 
 namespace manylight {
 
+/// What a reference may need beside what the sampler itself has.
+struct CheckContext {
+    const Scene& scene;
+    const LightTree& tree;
+};
+
 struct SamplerChecks {
-    /// Of a sampler that draws lights one at a time: the scalar reference of its choice.
-    reference::ChooseLight choose_light = nullptr;
-    /// Likewise, where there is a closed form of the probability that a draw is of a light.
-    reference::LightProbability light_probability = nullptr;
+    /// Of a sampler whose pixels do not depend on each other's draws: the scalar reference, which
+    /// draws from what the sampler, after prepare() and begin(), has made. Keeps references to the
+    /// context's.
+    std::unique_ptr<reference::Sampler> (*reference)(const LightSampler& sampler,
+                                                     const CheckContext& context) = nullptr;
     /// All checks that the sampler has, stage by stage.
     std::vector<Check> (*run)(Verifier& verifier, const Sampler& sampler) = nullptr;
 };
 
-/// What a sampler that draws lights one at a time draws from, on the host.
-struct HostTables {
-    explicit HostTables(const LightSampler& sampler);
-    [[nodiscard]] reference::Tables view(const LightTree& tree) const {
-        return {power_cdf, cdf, item_rows, &tree};
-    }
-
-    std::vector<uint> power_cdf;
-    std::vector<uint> cdf;
-    std::vector<uint> item_rows;
-};
-
 /// The row of a sampler of the table.
 [[nodiscard]] const SamplerChecks& checks_of(const Sampler& sampler);
+
+/// The buffers that a sampler draws from, of one that draws lights one at a time.
+[[nodiscard]] const Arguments& tables_of(const LightSampler& sampler);
 
 /// For `run`: stage samples alone.
 [[nodiscard]] std::vector<Check> check_samples(Verifier& verifier, const Sampler& sampler);

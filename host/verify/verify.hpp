@@ -78,7 +78,23 @@ class Verifier {
     /// Sampler adaptive with cuts of `cut_size` nodes at most: cuts, visibility, weights, samples.
     [[nodiscard]] std::vector<Check> adaptive(uint cut_size);
 
+    // What a sampler's own checks need.
+    [[nodiscard]] Device& device() { return device_; }
+    [[nodiscard]] const Scene& scene() const { return scene_; }
     [[nodiscard]] const std::vector<Light>& lights() const { return scene_.lights; }
+    [[nodiscard]] const Camera& camera() const { return camera_; }
+    [[nodiscard]] const VerifyOptions& options() const { return options_; }
+    [[nodiscard]] const Tiles& tiles() const { return tiles_; }
+    [[nodiscard]] const LightTree& tree() const { return tree_; }
+    [[nodiscard]] const reference::Tracer& tracer() const { return tracer_; }
+    /// Surfaces at the pixels' centres, [item] of tiles().
+    [[nodiscard]] const Buffer<Surface>& surfaces() const { return surfaces_; }
+    [[nodiscard]] const std::vector<Surface>& found_surfaces() const { return found_; }
+    /// The scene on the device, as the sampler needs it: with the lights in the tree's order or
+    /// the scene's.
+    [[nodiscard]] const DeviceScene& device_scene(const Sampler& sampler) const {
+        return sampler.tree ? tree_scene_ : device_scene_;
+    }
 
     /// All of them, for every sampler in the table.
     [[nodiscard]] std::vector<Check> all();

@@ -221,7 +221,7 @@ Check check_weights(const Run& run, const LightTree& tree, const Scene& scene, c
         const std::size_t tile =
             Run::item(run.second, run.lanes * group) / (std::size_t{ADAPTIVE_TILE} * ADAPTIVE_TILE);
         const std::vector<reference::DrawnPixel> pixels = group_of(run, run.lanes * group, true);
-        const std::vector<reference::PixelDraws> expected = reference::draw_nodes(
+        const std::vector<reference::NodeDraws> expected = reference::draw_nodes(
             tree, scene, camera, std::span(run.nodes).subspan(tile * CUT_CAPACITY, run.sizes[tile]),
             pixels, run.budget);
         for (std::size_t lane = 0; lane < run.lanes; ++lane) {
@@ -281,7 +281,7 @@ Check check_samples(const Run& run, const LightTree& tree, const Scene& scene,
         std::vector<DrawnLight> drawn;
         // The control variate: of all nodes, as they were refined. Those are the cut's nodes, but
         // for what the pixels of the group wanted: its sum comes from the same reference.
-        const reference::PixelDraws own = reference::draw_nodes(
+        const reference::NodeDraws own = reference::draw_nodes(
             tree, scene, camera, std::span(run.nodes).subspan(tile * CUT_CAPACITY, run.sizes[tile]),
             group_of(run, p, false), run.budget)[p % run.lanes];
         sum += control * own.control;

@@ -90,13 +90,15 @@ Check Verifier::samples(const Sampler& sampler) {
     const auto lights = static_cast<uint>(scene_.lights.size());
     const uint count = sampler.all_lights ? lights : 20;  // several launches
     const Tiles tiles = tiles_to_sample(count);
-    const DeviceScene& uploaded = sampler.tree ? tree_scene_ : device_scene_;
+    const DeviceScene& uploaded = device_scene(sampler);
     const std::unique_ptr<LightSampler> drawing =
         sampler.make({device_, uploaded, scene_.lights, std::max(tiles.count, tiles_.count),
-                      std::max(tiles.size, tiles_.size), options_.width, count, options_.clusters});
+                      std::max(tiles.size, tiles_.size), options_.width, count, options_.clusters,
+                      values_of(sampler)});
     drawing->prepare();
     if (!sampler.all_lights) drawing->begin(tiles_, surfaces_, options_.seed, [](std::size_t) {});
-    const HostTables tables(*drawing);
+    const std::unique_ptr<reference::Sampler> judge_sampler =
+        checks_of(sampler).reference(*drawing, {scene_, tree_});
     const PixelSample sample{2, options_.seed, false};
     Buffer<Surface> surfaces = trace(tiles, {});
     const std::vector<Surface> points = surfaces.download();
@@ -112,9 +114,9 @@ Check Verifier::samples(const Sampler& sampler) {
         std::size_t item;
     };
     const auto judge_pixel = [&](uint x, uint y, std::size_t item, bool closely) {
-        return reference::estimate(scene_, tracer_, camera_, points[item], tables.view(tree_),
-                                   checks_of(sampler).choose_light, item, y * tiles.width + x,
-                                   sample.index, sample.seed, count, closely);
+        return judge_sampler->estimate(
+            tracer_, {scene_, camera_, points[item]},
+            {item, y * tiles.width + x, sample.index, sample.seed, count, closely});
     };
     std::vector<Pixel> agreeing;
     std::size_t next = 0;

@@ -132,7 +132,7 @@ void add_scene_command(CLI::App& app, std::function<int()>& run) {
     for (const Builtin& scene : all_builtins())
         footer += fmt::format("  {:<12}{}\n", scene.name, scene.summary);
     for (const Builtin& scene : all_builtins())
-        for (const Parameter& p : scene.parameters)
+        for (const SceneParameter& p : scene.parameters)
             command->add_option_function<double>(
                 fmt::format("--{}", p.name),
                 [arguments, name = std::string(p.name)](double value) {

@@ -39,6 +39,7 @@ void repeat(CLI::App& command, const std::string& image) {
     else if (facts["cut_short"] == "true")
         warn("--like {}: was cut short at {} spp; {} are rendered", image, facts["spp"],
              whole_spp(facts["spp"]));
+    if (command.count("--sampler") > 0) facts.erase("set");  // another sampler's
     if (facts.contains("spp")) facts["spp"] = whole_spp(facts["spp"]);
     for (CLI::Option* option : command.get_options()) {
         const std::string name =
@@ -65,6 +66,19 @@ void add_sampling(CLI::App& command, RenderArguments& a) {
                     "name with .png, here)")
         ->allow_extra_args(false);
     command.add_option("--sampler", a.sampler, "see below")->capture_default_str();
+    command
+        .add_option_function<std::vector<std::string>>(
+            "--set",
+            [&o](const std::vector<std::string>& texts) {
+                for (const std::string& text : texts) {
+                    const auto [name, value] = parse_parameter(text);
+                    if (!o.parameters.emplace(name, value).second)
+                        throw CLI::ValidationError("--set", name + " is given twice");
+                }
+            },
+            "NAME=VALUE: parameters of the sampler, see below")
+        ->delimiter(',')
+        ->allow_extra_args(false);
     command
         .add_option("--light-samples", o.light_samples,
                     "light samples per pixel sample (default: 4 in the first four, then 16)")

@@ -93,6 +93,19 @@ void add_clusters(CLI::App& command, ClusterOptions& clusters) {
         ->group(group);
 }
 
+namespace {
+
+std::string parameter_list() {
+    std::string text;
+    for (const Sampler& s : all_samplers())
+        for (const Parameter& p : s.parameters)
+            text += fmt::format("  {:<24}{}: {} ({} to {}; default: {})\n", p.name, s.name,
+                                p.summary, p.least, p.most, p.value);
+    return text.empty() ? text : "\nParameters of samplers, for --set:\n" + text;
+}
+
+}  // namespace
+
 std::string sampler_list(bool automatic) {
     std::string text = "\nSamplers:\n";
     if (automatic)
@@ -102,6 +115,7 @@ std::string sampler_list(bool automatic) {
     for (const Sampler& s : all_samplers())
         text +=
             fmt::format("  {:<24}{} ({})\n", s.name, s.summary, s.biased ? "biased" : "unbiased");
+    text += parameter_list();
     return text;
 }
 

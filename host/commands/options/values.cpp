@@ -40,6 +40,16 @@ std::pair<double, double> parse_shift(const std::string& text) {
     return {values[0], values[1]};
 }
 
+std::pair<std::string, double> parse_parameter(const std::string& text) {
+    const std::size_t sign = text.find('=');
+    const std::string number = sign == std::string::npos ? "" : text.substr(sign + 1);
+    char* end = nullptr;
+    const double value = std::strtod(number.c_str(), &end);
+    if (sign == 0 || number.empty() || *end != '\0' || !std::isfinite(value))
+        throw CLI::ValidationError("--set", text + " is no NAME=VALUE, such as tau=0.1");
+    return {text.substr(0, sign), value};
+}
+
 CLI::Validator whole(std::uint64_t lower, std::uint64_t upper) {
     return CLI::Validator(
         [lower, upper](std::string& text) {

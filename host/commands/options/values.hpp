@@ -23,6 +23,9 @@ constexpr uint most_spp = 1 << 20;
 /// "3,-1.5": a shift by pixels. Throws CLI::ValidationError.
 [[nodiscard]] std::pair<double, double> parse_shift(const std::string& text);
 
+/// "tau=0.1": a name and a number. Throws CLI::ValidationError.
+[[nodiscard]] std::pair<std::string, double> parse_parameter(const std::string& text);
+
 /// "320,200": a pixel. Throws CLI::ValidationError.
 [[nodiscard]] std::pair<unsigned, unsigned> parse_pixel(const std::string& text);
 

@@ -94,7 +94,7 @@ const Builtin& find_builtin(const std::string& name) {
     throw InputError("scene {}: no such scene (there are: {})", name, names);
 }
 
-void check(const Parameter& parameter, double value, std::string_view scene) {
+void check(const SceneParameter& parameter, double value, std::string_view scene) {
     const bool in = value >= parameter.least() && value <= parameter.most();
     if (!in || (parameter.whole && value != std::floor(value)))
         throw InputError("--{} {}: scene {} takes {} from {} to {}", parameter.name, value, scene,
@@ -105,12 +105,12 @@ void check(const Parameter& parameter, double value, std::string_view scene) {
 // With a value for every parameter of the scene.
 BuiltinOptions complete(const Builtin& scene, BuiltinOptions options) {
     for (const auto& [name, value] : options.values) {
-        const auto parameter = std::ranges::find(scene.parameters, name, &Parameter::name);
+        const auto parameter = std::ranges::find(scene.parameters, name, &SceneParameter::name);
         if (parameter == scene.parameters.end())
             throw InputError("--{} {}: scene {} takes no such number", name, value, scene.name);
         check(*parameter, value, scene.name);
     }
-    for (const Parameter& parameter : scene.parameters)
+    for (const SceneParameter& parameter : scene.parameters)
         options.values.try_emplace(std::string(parameter.name), parameter.usual);
     return options;
 }

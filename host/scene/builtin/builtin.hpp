@@ -13,7 +13,7 @@
 namespace manylight {
 
 /// A number that a built-in scene takes: --NAME of manylight scene.
-struct Parameter {
+struct SceneParameter {
     std::string_view name;
     std::string_view summary;  // with its unit
     bool whole = false;
@@ -37,7 +37,7 @@ struct Builtin {
     std::string_view name;
     std::string_view summary;
     void (*make)(GltfWriter& out, const BuiltinOptions& options);
-    std::vector<Parameter> parameters = {};
+    std::vector<SceneParameter> parameters = {};
     bool takes_mesh = false;
 };
 

@@ -1,12 +1,23 @@
 // SPDX-License-Identifier: MIT
+#include "reference/samplers/contribution.hpp"
 #include "samplers/contribution/contribution.hpp"
 #include "verify/sampler_checks.hpp"
 
 namespace manylight {
 
+namespace {
+
+std::unique_ptr<reference::Sampler> make_reference(const LightSampler& sampler,
+                                                   const CheckContext& /*context*/) {
+    const Arguments& tables = tables_of(sampler);
+    return std::make_unique<reference::ByContribution>(tables.download<uint>("cdf"),
+                                                       tables.download<uint>("item_rows"));
+}
+
+}  // namespace
+
 SamplerChecks checks_contribution() {
-    return {.choose_light = reference::choose_contribution,
-            .light_probability = reference::probability_contribution,
+    return {.reference = make_reference,
             .run = [](Verifier& verifier, const Sampler& sampler) -> std::vector<Check> {
                 return {verifier.pdf(sampler.name, paper_shares, true), verifier.samples(sampler)};
             }};
@@ -14,8 +25,7 @@ SamplerChecks checks_contribution() {
 
 SamplerChecks checks_contribution_defensive() {
     return {
-        .choose_light = reference::choose_contribution,
-        .light_probability = reference::probability_contribution,
+        .reference = make_reference,
         .run = [](Verifier& verifier, const Sampler& sampler) -> std::vector<Check> {
             return {verifier.pdf(sampler.name, defensive_shares, true), verifier.samples(sampler)};
         }};

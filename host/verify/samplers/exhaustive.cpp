@@ -1,10 +1,16 @@
 // SPDX-License-Identifier: MIT
+#include "reference/samplers/exhaustive.hpp"
 #include "verify/sampler_checks.hpp"
 
 namespace manylight {
 
 SamplerChecks checks_exhaustive() {
-    return {.choose_light = reference::choose_exhaustive, .run = check_samples};
+    return {
+        .reference = [](const LightSampler& /*sampler*/,
+                        const CheckContext& /*context*/) -> std::unique_ptr<reference::Sampler> {
+            return std::make_unique<reference::Exhaustive>();
+        },
+        .run = check_samples};
 }
 
 }  // namespace manylight

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: MIT
+#include "reference/samplers/lighttree.hpp"
 #include "verify/sampler_checks.hpp"
 
 namespace manylight {
 
 SamplerChecks checks_lighttree() {
-    return {.choose_light = reference::choose_lighttree,
-            .light_probability = reference::probability_lighttree,
+    return {.reference = [](const LightSampler& /*sampler*/,
+                            const CheckContext& context) -> std::unique_ptr<reference::Sampler> {
+                return std::make_unique<reference::DownLightTree>(context.tree);
+            },
             .run = check_samples};
 }
 

@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: MIT
+#include "reference/samplers/uniform.hpp"
 #include "verify/sampler_checks.hpp"
 
 namespace manylight {
 
 SamplerChecks checks_uniform() {
-    return {.choose_light = reference::choose_uniform,
-            .light_probability = reference::probability_uniform,
-            .run = check_samples};
+    return {
+        .reference = [](const LightSampler& /*sampler*/,
+                        const CheckContext& /*context*/) -> std::unique_ptr<reference::Sampler> {
+            return std::make_unique<reference::Uniform>();
+        },
+        .run = check_samples};
 }
 
 }  // namespace manylight
