@@ -9,7 +9,7 @@
 // the row's representative with V = 1, judged by its centroid; and the ray that has to be free.
 // Rows are cut to packets of 16 lights; item i is lane i % 16 of packet i / 16, the first of which
 // is first_row's first.
-KERNEL void contributions_aim(Camera camera, __global const Surface* surfaces,
+KERNEL void contributions_aim(VIEW_PARAMETERS, __global const Surface* surfaces,
                               __global const Material* materials, __global const Light* lights,
                               uint light_count, __global const uint* representatives,
                               uint first_row, uint row_count, __global float* contributions,
@@ -25,7 +25,7 @@ KERNEL void contributions_aim(Camera camera, __global const Surface* surfaces,
     if (light >= light_count) return;
     float value = 0.0f;
     if (representative != NO_ITEM) {
-        const Receiver receiver = make_receiver(surfaces + representative, materials, camera);
+        const Receiver receiver = make_receiver(surfaces, representative, materials, VIEW);
         Ray shadow;
         const float2 u = light_centroid(lights + light);
         value = luminance(unshadowed(&receiver, lights + light, u, &shadow));

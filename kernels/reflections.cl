@@ -44,7 +44,7 @@ static float3 sample_lobe(float alpha, float3 n, float3 wo, float2 u) {
 #endif
 
 // Adds to estimates[item].rgb, cd/m2. cell_areas[triangle]: see Scene.
-KERNEL void reflections_add(Tiles tiles, Camera camera, BVH_PARAMETERS,
+KERNEL void reflections_add(Tiles tiles, VIEW_PARAMETERS, BVH_PARAMETERS,
                             __global const float* vertices, __global const uint* indices,
                             __global const uint* triangle_materials,
                             __global const Material* materials, __global const float* cell_areas,
@@ -52,11 +52,11 @@ KERNEL void reflections_add(Tiles tiles, Camera camera, BVH_PARAMETERS,
                             __global float4* estimates MAP_PARAMETERS) {
     const uint item = get_global_id(0);
     if (!item_in_image(tiles, item) || surface_missed(surfaces + item)) return;
-    const Receiver r = make_receiver(surfaces + item, materials, camera);
+    const Receiver r = make_receiver(surfaces, item, materials, VIEW);
     if (!r.reflects) return;
     const uint2 pixel = item_pixel(tiles, item);
     const float2 u = reflection_point(pixel.y * tiles.width + pixel.x, pixel_sample, seed);
-    const float3 wi = sample_lobe(r.material.roughness, r.normal, r.to_camera, u);
+    const float3 wi = sample_lobe(r.material.roughness, r.normal, r.outgoing, u);
     if (dot(r.normal, wi) <= 0.0f || dot(r.horizon, wi) <= 0.0f) return;
     const Ray ray = {shadow_origin(&r), wi, INFINITY};
     const Hit hit = closest_hit(BVH_ARGUMENTS, ray, 0.0f);
@@ -82,14 +82,19 @@ KERNEL void reflections_add(Tiles tiles, Camera camera, BVH_PARAMETERS,
     const float solid_angle = area * fabs(cosine) / (hit.t * hit.t);
     const Material m = r.material;
     const float n_in = dot(r.normal, wi);
-    const float3 h = normalize(wi + r.to_camera);
-    const float lobe = ggx_lobe(m.roughness, r.normal, h, n_in, dot(r.normal, r.to_camera));
+    const float3 h = normalize(wi + r.outgoing);
+    const float lobe = ggx_lobe(m.roughness, r.normal, h, n_in, dot(r.normal, r.outgoing));
     const float density = lobe_density(lobe, m.roughness, n_in);
-    const float s = schlick(dot(r.to_camera, h));
+    const float s = schlick(dot(r.outgoing, h));
     const float3 fresnel =
         (1.0f - m.base_color.w) * dielectric_fresnel(m, s) + m.base_color.w * metal_fresnel(m, s);
     const float share = lobe_share(density, solid_angle);
-    estimates[item].xyz += fresnel * (lobe * n_in / density * share) * emission.xyz;
+    const float3 value = fresnel * (lobe * n_in / density * share) * emission.xyz;
+#if HAS_OUTGOING
+    estimates[item].xyz += value * r.throughput;
+#else
+    estimates[item].xyz += value;
+#endif
 }
 
 #endif

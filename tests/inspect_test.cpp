@@ -163,7 +163,7 @@ TEST(inspect, variance_is_that_of_simulated_draws) {
                             reference::descend(tree, node.node, point, uniform(random), random());
                         if (d.probability == 0) continue;
                         const reference::Unshadowed term = reference::unshadowed(
-                            point.surface, point.material(), point.camera, tree.lights[d.light],
+                            point.surface, point.material(), point.viewer, tree.lights[d.light],
                             {uniform(random), uniform(random)});
                         if (term.value != glm::dvec3(0) && !tracer.occluded(term.shadow))
                             value +=

@@ -160,7 +160,7 @@ Image exact_image(const test::TestScene& scene) {
                 reference::gbuffer(scene.scene, tracer, scene.camera, tiles, x, y, false, 0, 0);
             const glm::dvec3 position(surface.position);
             const glm::dvec3 normal(surface.normal);
-            const glm::dvec3 wo = reference::direction_to_camera(scene.camera, position);
+            const glm::dvec3 wo = reference::Viewer(scene.camera).direction(position);
             glm::dvec3 sum(0);
             for (const Light& light : scene.scene.lights) {
                 const glm::dvec3 u(light.axis);

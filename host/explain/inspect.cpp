@@ -63,7 +63,7 @@ class Truth {
             const glm::dvec2 u = glm::fract(
                 0.5 + static_cast<double>(i) * glm::dvec2(0.7548776662466927, 0.5698402909980532));
             const reference::Unshadowed term =
-                reference::unshadowed(point_.surface, point_.material(), point_.camera, light, u);
+                reference::unshadowed(point_.surface, point_.material(), point_.viewer, light, u);
             if (term.value == glm::dvec3(0)) continue;
             facing = true;
             if (tracer_.occluded(term.shadow)) continue;
@@ -164,9 +164,8 @@ Group find_group(const Scene& scene, std::optional<Scene>& varied, const referen
             surface = reference::surface_at(scene, ray, hit);
             if (varied) reference::own_material(*varied, ray, hit, surface);
         }
-        reference::DrawnPixel& drawn = out.pixels.emplace_back();
-        drawn.surface = surface.position.w >= 0 ? &surface : nullptr;
-        drawn.starts = {0, 0.5};
+        reference::DrawnPixel& drawn = out.pixels.emplace_back(
+            surface.position.w >= 0 ? &surface : nullptr, camera, reference::Starts{0, 0.5});
         for (std::size_t slot = 0; slot < knowledge.cut.size(); ++slot)
             drawn.visible.push_back(knowledge.visible[64 * slot + own_cell]);
     }
@@ -197,8 +196,7 @@ PixelReport inspect_pixel(const Scene& plain, const LightTree& tree, const Camer
     for (const uint node : knowledge.cut) out.cut_lights += tree.nodes[node].count == 1;
 
     const std::vector<reference::Drawn> choices =
-        reference::draw_nodes(tree, scene, camera, knowledge.cut, group.pixels,
-                              knowledge.budget)[group.own]
+        reference::draw_nodes(tree, scene, knowledge.cut, group.pixels, knowledge.budget)[group.own]
             .nodes;
     const reference::Point point{scene, camera, out.surface};
     const Truth truth(tree, tracer, point);

@@ -21,11 +21,11 @@ struct Entry {
 struct Drawer {
     const LightTree& tree;
     const Scene& scene;
-    const Camera& camera;
     const Budget& budget;
 
     [[nodiscard]] glm::dvec3 estimate(const Entry& e, const DrawnPixel& p) const {
-        return p.surface ? node_estimate(tree, e.node, {scene, camera, *p.surface}) : glm::dvec3(0);
+        return p.surface ? node_estimate(tree, e.node, {scene, p.viewer, *p.surface})
+                         : glm::dvec3(0);
     }
 
     [[nodiscard]] double weight(const Entry& e, const DrawnPixel& p) const {
@@ -123,7 +123,7 @@ NodeDraws draw_pixel(const Drawer& drawer, std::span<const Entry> list, const Dr
         weights.push_back(drawer.weight(e, pixel));
         sum += weights.back();
         estimates_blur +=
-            estimate_rounding(tree, e.node, {drawer.scene, drawer.camera, *pixel.surface});
+            estimate_rounding(tree, e.node, {drawer.scene, pixel.viewer, *pixel.surface});
     }
     // Where weights are hardly more than rounding, so is what is drawn.
     if (estimates_blur > 2e-4 * sum) d.uncertain = true;
@@ -160,10 +160,10 @@ float shifted_gradient_noise(uint x, uint y, float shift) {
 
 }  // namespace
 
-std::vector<NodeDraws> draw_nodes(const LightTree& tree, const Scene& scene, const Camera& camera,
+std::vector<NodeDraws> draw_nodes(const LightTree& tree, const Scene& scene,
                                   std::span<const uint> cut, std::span<const DrawnPixel> pixels,
                                   const Budget& budget) {
-    const Drawer drawer{tree, scene, camera, budget};
+    const Drawer drawer{tree, scene, budget};
     bool doubt = false;
     const std::vector<Entry> list = refine(drawer, cut, pixels, doubt);
     std::vector<NodeDraws> out;

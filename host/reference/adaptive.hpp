@@ -38,13 +38,14 @@ struct Starts {
 /// A pixel of those that are drawn together.
 struct DrawnPixel {
     const Surface* surface;  // or none
+    Viewer viewer;
     Starts starts;
     std::vector<double> visible;  // [slot] V^
 };
 
 /// Draws the nodes of pixels, which share what is refined: as many as the device has lanes.
 [[nodiscard]] std::vector<NodeDraws> draw_nodes(const LightTree& tree, const Scene& scene,
-                                                const Camera& camera, std::span<const uint> cut,
+                                                std::span<const uint> cut,
                                                 std::span<const DrawnPixel> pixels,
                                                 const Budget& budget);
 

@@ -4,8 +4,8 @@
 namespace manylight::reference {
 
 Contribution contribution(const Tracer& tracer, const Surface& representative,
-                          const Material& material, const Camera& camera, const Light& light) {
-    const Unshadowed u = unshadowed(representative, material, camera, light, centroid(light));
+                          const Material& material, const Viewer& viewer, const Light& light) {
+    const Unshadowed u = unshadowed(representative, material, viewer, light, centroid(light));
     Contribution c{luminance(u.value), false, u.shadow, u.rounding};
     if (c.value > 0) c.hidden = tracer.occluded(u.shadow);
     return c;

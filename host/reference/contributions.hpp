@@ -18,7 +18,7 @@ struct Contribution {
 
 /// Stage contributions: one light at one representative; area lights by their centroid.
 [[nodiscard]] Contribution contribution(const Tracer& tracer, const Surface& representative,
-                                        const Material& material, const Camera& camera,
+                                        const Material& material, const Viewer& viewer,
                                         const Light& light);
 
 /// Where stage contributions samples a light, in [0, 1)^2: the centroid of an area light.

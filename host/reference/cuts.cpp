@@ -42,11 +42,16 @@ struct Prober {
     const LightTree& tree;
     const Scene& scene;
     const Tracer& tracer;
-    const Camera& camera;
+    const Viewers& view;
+    std::span<const Surface> surfaces;
     std::vector<const Surface*> representatives;
     uint rays;       // of a node
     uint tile_bits;  // random
     bool uncertain = false;
+
+    [[nodiscard]] Viewer viewer(const Surface& surface) const {
+        return view.of(static_cast<std::size_t>(&surface - surfaces.data()));
+    }
 
     // A leaf below a node, by the power of children.
     uint choose_leaf(uint node, double u) {
@@ -74,10 +79,10 @@ struct Prober {
             const Surface& s = *representatives[(i + bits % count) % count];
             const Light& light = tree.lights[tree.nodes[leaf].first];
             const Unshadowed term =
-                unshadowed(s, scene.materials[s.shading], camera, light, centroid(light));
+                unshadowed(s, scene.materials[s.shading], viewer(s), light, centroid(light));
             // Whether there is light at all: a light with area is hardly seen in its own plane.
             if (glm::length(term.value) <=
-                rounding_slack(s, scene.materials[s.shading], camera, light, centroid(light)))
+                rounding_slack(s, scene.materials[s.shading], viewer(s), light, centroid(light)))
                 uncertain = uncertain || has_area(light);
             if (term.value == glm::dvec3(0)) continue;
             found.traced += 1;
@@ -91,7 +96,7 @@ struct Prober {
     [[nodiscard]] double score(uint node, const Rays& seen) const {
         double sum = 0;
         for (const Surface* s : representatives)
-            sum += luminance(node_estimate(tree, node, {scene, camera, *s}));
+            sum += luminance(node_estimate(tree, node, {scene, viewer(*s), *s}));
         return sum * std::sqrt((seen.passed + 0.7) / (seen.traced + 1));
     }
 };
@@ -133,15 +138,12 @@ std::list<Entry> split_nodes(Prober& prober, uint cut_size) {
 }  // namespace
 
 TileCut make_cut(const LightTree& tree, const Scene& scene, const Tracer& tracer,
-                 const Camera& camera, const Tiles& tiles, uint tile,
+                 const Viewers& view, const Tiles& tiles, uint tile,
                  std::span<const Surface> surfaces, uint cut_size, uint probe_rays, uint seed) {
-    Prober prober{tree,
-                  scene,
-                  tracer,
-                  camera,
-                  find_representatives(tiles, tile, surfaces),
-                  probe_rays,
-                  random_bits(tiles.first + tile, 0, 0xfffffffeu, seed)[0]};
+    Prober prober{tree,       scene,
+                  tracer,     view,
+                  surfaces,   find_representatives(tiles, tile, surfaces),
+                  probe_rays, random_bits(tiles.first + tile, 0, 0xfffffffeu, seed)[0]};
     TileCut out;
     if (prober.representatives.empty()) {
         out.nodes = tree.roots;

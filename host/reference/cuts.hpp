@@ -25,7 +25,7 @@ struct TileCut {
 
 /// Stage cuts for one tile of a run, numbered within it; `surfaces`: of the run's items.
 [[nodiscard]] TileCut make_cut(const LightTree& tree, const Scene& scene, const Tracer& tracer,
-                               const Camera& camera, const Tiles& tiles, uint tile,
+                               const Viewers& view, const Tiles& tiles, uint tile,
                                std::span<const Surface> surfaces, uint cut_size, uint probe_rays,
                                uint seed);
 

@@ -111,8 +111,8 @@ glm::dvec3 node_estimate(const LightTree& tree, uint index, const Point& point) 
         }
         factor = soft(k, spread) * emission / softened;
     }
-    const glm::dvec3 to_camera = direction_to_camera(point.camera, glm::dvec3(s.position));
-    return glm::dvec3(node.intensity) * factor *
+    const glm::dvec3 to_camera = point.viewer.direction(glm::dvec3(s.position));
+    return point.viewer.throughput() * glm::dvec3(node.intensity) * factor *
            widened_brdf(point.material(), normal, towards, to_camera, spread);
 }
 
@@ -129,7 +129,7 @@ double estimate_rounding(const LightTree& tree, uint index, const Point& point) 
     const auto luminance_at = [&](double steps) {
         Surface moved = point.surface;
         moved.position = float4(glm::vec3(position + steps * step), moved.position.w);
-        return luminance(node_estimate(tree, index, {point.scene, point.camera, moved}));
+        return luminance(node_estimate(tree, index, {point.scene, point.viewer, moved}));
     };
     const double here = luminance_at(0);
     return std::max(std::abs(luminance_at(longer) - here), std::abs(luminance_at(-longer) - here)) /

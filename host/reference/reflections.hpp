@@ -24,7 +24,7 @@ struct Reflection {
 
 /// What stage reflections adds to the estimate at a surface; `judge`: fill slack and borderline
 /// (slow).
-[[nodiscard]] Reflection reflection(const Scene& scene, const Tracer& tracer, const Camera& camera,
+[[nodiscard]] Reflection reflection(const Scene& scene, const Tracer& tracer, const Viewer& viewer,
                                     const Surface& surface, uint pixel, uint pixel_sample,
                                     uint seed, bool judge);
 

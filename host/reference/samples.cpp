@@ -46,10 +46,10 @@ Estimate OneLight::estimate(const Tracer& tracer, const Point& point,
         if (choice.weight == 0) continue;
         const Light& light = point.scene.lights[choice.light];
         const glm::dvec2 u(unit_fraction(bits[1]), unit_fraction(bits[2]));
-        const Unshadowed term = unshadowed(point.surface, point.material(), point.camera, light, u);
+        const Unshadowed term = unshadowed(point.surface, point.material(), point.viewer, light, u);
         if (draws.judge)
             out.slack += choice.weight *
-                         rounding_slack(point.surface, point.material(), point.camera, light, u);
+                         rounding_slack(point.surface, point.material(), point.viewer, light, u);
         if (term.value == glm::dvec3(0)) continue;
         const glm::dvec3 value = term.value * choice.weight;
         out.slack += choice.slack * glm::length(value);

@@ -13,7 +13,7 @@ namespace manylight::reference {
 /// A surface point whose lights are drawn.
 struct Point {
     const Scene& scene;
-    const Camera& camera;
+    Viewer viewer;
     const Surface& surface;
     [[nodiscard]] const Material& material() const { return scene.materials[surface.shading]; }
 };

@@ -165,7 +165,7 @@ double versine_rounding(double cosine) {
 }
 
 Unshadowed shade(const glm::dvec3& position, const Surface& surface, const Material& material,
-                 const Camera& camera, const Light& light, const glm::dvec2& u,
+                 const Viewer& viewer, const Light& light, const glm::dvec2& u,
                  const LightShift& shift = {}) {
     const glm::dvec3 normal = glm::normalize(glm::dvec3(surface.normal));
     const glm::dvec3 horizon(surface.horizon);
@@ -175,10 +175,10 @@ Unshadowed shade(const glm::dvec3& position, const Surface& surface, const Mater
     if (e.light == glm::dvec3(0)) return out;
     const double cosine = glm::dot(normal, e.towards);
     if (cosine <= 0 || glm::dot(horizon, e.towards) <= 0) return out;
-    const Brdf f = split_brdf(material, normal, e.towards, direction_to_camera(camera, position));
+    const Brdf f = split_brdf(material, normal, e.towards, viewer.direction(position));
     const double share =
-        reflects(surface, material, camera) ? light_share(f.density, e.solid_angle) : 1;
-    out.value = (f.diffuse + f.specular * share) * e.light * cosine;
+        reflects(surface, material, viewer) ? light_share(f.density, e.solid_angle) : 1;
+    out.value = (f.diffuse + f.specular * share) * e.light * cosine * viewer.throughput();
     out.shadow.origin = position + horizon * static_cast<double>(surface.horizon.w);
     out.shadow.direction = e.infinite ? e.towards : e.target - out.shadow.origin;
     out.rounding = {origin_rounding(surface, out.shadow.origin), e.moved};
@@ -233,23 +233,18 @@ glm::dvec3 origin_rounding(const Surface& surface, const glm::dvec3& origin) {
     return epsilon * (glm::abs(origin) + double{surface.horizon.w});
 }
 
-bool reflects(const Surface& surface, const Material& material, const Camera& camera) {
-    const glm::dvec3 wo = direction_to_camera(camera, glm::dvec3(surface.position));
+bool reflects(const Surface& surface, const Material& material, const Viewer& viewer) {
+    const glm::dvec3 wo = viewer.direction(glm::dvec3(surface.position));
     return (material.base_color.w > 0 || material.specular > 0) &&
            material.roughness < REFLECTING_ALPHA && glm::dot(glm::dvec3(surface.normal), wo) > 1e-4;
 }
 
-glm::dvec3 direction_to_camera(const Camera& camera, const glm::dvec3& position) {
-    if (camera.forward.w != 0) return -glm::dvec3(camera.forward);
-    return glm::normalize(glm::dvec3(camera.origin) - position);
-}
-
-Unshadowed unshadowed(const Surface& surface, const Material& material, const Camera& camera,
+Unshadowed unshadowed(const Surface& surface, const Material& material, const Viewer& viewer,
                       const Light& light, const glm::dvec2& u) {
-    return shade(glm::dvec3(surface.position), surface, material, camera, light, u);
+    return shade(glm::dvec3(surface.position), surface, material, viewer, light, u);
 }
 
-double rounding_slack(const Surface& surface, const Material& material, const Camera& camera,
+double rounding_slack(const Surface& surface, const Material& material, const Viewer& viewer,
                       const Light& light, const glm::dvec2& u) {
     const glm::dvec3 position(surface.position);
     const Emission e = emission(light, position, u);
@@ -257,15 +252,14 @@ double rounding_slack(const Surface& surface, const Material& material, const Ca
         std::max({std::abs(position.x), std::abs(position.y), std::abs(position.z),
                   std::abs(e.target.x), std::abs(e.target.y), std::abs(e.target.z)});
     const double to_light = e.infinite ? 1 : glm::length(e.target - position);
-    const double to_camera = glm::length(glm::dvec3(camera.origin) - position);
-    const double shift = 8 * epsilon * std::max({largest, to_light, to_camera});
-    const glm::dvec3 centre = shade(position, surface, material, camera, light, u).value;
+    const double shift = 8 * epsilon * std::max({largest, to_light, viewer.distance(position)});
+    const glm::dvec3 centre = shade(position, surface, material, viewer, light, u).value;
     const auto change = [&](const glm::dvec3& step, const LightShift& light_shift) {
         double most = 0;
         for (const double sign : {-1.0, 1.0}) {
             const LightShift to{sign * light_shift.normal, sign * light_shift.versine};
             const glm::dvec3 value =
-                shade(position + sign * step, surface, material, camera, light, u, to).value;
+                shade(position + sign * step, surface, material, viewer, light, u, to).value;
             most = std::max(most, glm::length(value - centre));
         }
         return most;

@@ -1,7 +1,12 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <optional>
+#include <utility>
+#include <vector>
+
 #include "reference/tracing.hpp"
+#include "shared/camera.h"
 #include "shared/surface.h"
 
 namespace manylight::reference {
@@ -18,15 +23,56 @@ struct Brdf {
 [[nodiscard]] glm::dvec3 brdf(const Material& material, const glm::dvec3& normal,
                               const glm::dvec3& wi, const glm::dvec3& wo);
 
-/// Unit direction from a point to the camera.
-[[nodiscard]] glm::dvec3 direction_to_camera(const Camera& camera, const glm::dvec3& position);
+/// Where the light of a surface point goes, and what of it counts: to a camera, all of it, or along
+/// a direction, times a throughput.
+class Viewer {
+  public:
+    Viewer(const Camera& camera)  // NOLINT: a camera is one
+        : from_(camera.forward.w != 0 ? -glm::dvec3(camera.forward) : glm::dvec3(camera.origin)),
+          is_far_(camera.forward.w != 0),
+          place_(camera.origin) {}
+    explicit Viewer(const Outgoing& outgoing)
+        : from_(outgoing.direction), is_far_(true), throughput_(outgoing.throughput) {}
+
+    /// Unit direction from a point.
+    [[nodiscard]] glm::dvec3 direction(const glm::dvec3& position) const {
+        return is_far_ ? from_ : glm::normalize(from_ - position);
+    }
+    [[nodiscard]] const glm::dvec3& throughput() const { return throughput_; }
+    /// Of the camera from a point, m.
+    [[nodiscard]] double distance(const glm::dvec3& position) const {
+        return place_ ? glm::length(*place_ - position) : 0;
+    }
+
+  private:
+    glm::dvec3 from_;  // unit direction, or the camera's position
+    bool is_far_;
+    std::optional<glm::dvec3> place_;  // of the camera
+    glm::dvec3 throughput_{1};
+};
+
+/// The viewers of a batch's items: one camera, or one of each.
+class Viewers {
+  public:
+    Viewers(const Camera& camera) : camera_(camera) {}  // NOLINT: a camera is one
+    /// outgoing[item].
+    explicit Viewers(std::vector<Outgoing> outgoing) : outgoing_(std::move(outgoing)) {}
+
+    [[nodiscard]] Viewer of(std::size_t item) const {
+        return outgoing_.empty() ? Viewer(camera_) : Viewer(outgoing_[item]);
+    }
+
+  private:
+    Camera camera_{};
+    std::vector<Outgoing> outgoing_;
+};
 
 /// How far single precision moves the start of a surface's shadow rays along each axis, m: by a
 /// unit in the last place, for the product with the normal and the sum.
 [[nodiscard]] glm::dvec3 origin_rounding(const Surface& surface, const glm::dvec3& origin);
 
 /// Whether stage reflections takes part in what the lobe reflects of area lights.
-[[nodiscard]] bool reflects(const Surface& surface, const Material& material, const Camera& camera);
+[[nodiscard]] bool reflects(const Surface& surface, const Material& material, const Viewer& viewer);
 
 /// The light samples' share of what the lobe reflects of a point of a light's cell (area x cosine /
 /// squared distance = `solid_angle`, sr), where reflected directions have `density`, 1/sr: the
@@ -40,7 +86,7 @@ struct Brdf {
 /// Direct light of one light, or of its point u in [0, 1)^2, without visibility and without what is
 /// left to stage reflections.
 struct Unshadowed {
-    glm::dvec3 value;  // f Le G of paper eq. (1), cd/m2
+    glm::dvec3 value;  // f Le G of paper eq. (1) times the throughput, cd/m2
     Ray shadow;        // the segment to be free
     // How far single precision moves its ends: see origin_rounding(); an area's point by 4 units in
     // the last place of the area's coordinates, being a sum of products, and, as it is off along
@@ -48,7 +94,7 @@ struct Unshadowed {
     EndShifts rounding;
 };
 [[nodiscard]] Unshadowed unshadowed(const Surface& surface, const Material& material,
-                                    const Camera& camera, const Light& light, const glm::dvec2& u);
+                                    const Viewer& viewer, const Light& light, const glm::dvec2& u);
 
 [[nodiscard]] inline bool has_area(const Light& light) {
     const auto kind = static_cast<LightKind>(light.position.w);
@@ -60,7 +106,7 @@ struct Unshadowed {
 /// the distance to the light, of an area's normal (a cross product) by 2 units of the product of
 /// its sides, and of 1 - the cosine to a spot's axis by what 4 units do to the sine, added up.
 [[nodiscard]] double rounding_slack(const Surface& surface, const Material& material,
-                                    const Camera& camera, const Light& light, const glm::dvec2& u);
+                                    const Viewer& viewer, const Light& light, const glm::dvec2& u);
 
 [[nodiscard]] inline double luminance(const glm::dvec3& rgb) {
     return 0.2126 * rgb.r + 0.7152 * rgb.g + 0.0722 * rgb.b;

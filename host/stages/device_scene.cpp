@@ -7,12 +7,20 @@
 namespace manylight {
 namespace {
 
-Defines kind_defines(const Features& features) {
-    Defines defines;
-#define DEFINE_KIND(name, NAME, value) defines["HAS_" #NAME] = features.kinds[value];
+void set_lights(Device& device, const std::vector<Light>& lights, const LightTree* tree,
+                DeviceScene& out) {
+    out.light_count = static_cast<uint>(lights.size());
+    out.arguments.set("lights", device.upload(tree ? tree->lights : lights))
+        .set("light_count", out.light_count);
+    if (tree)
+        out.arguments.set("nodes", device.upload(tree->nodes))
+            .set("root_count", static_cast<uint>(tree->roots.size()))
+            .set("second_root", tree->roots.size() > 1 ? tree->roots[1] : 0);
+    bool kinds[light_kind_count] = {};
+    for (const Light& light : lights) kinds[static_cast<std::size_t>(light.position.w)] = true;
+#define DEFINE_KIND(name, NAME, value) out.shading["HAS_" #NAME] = kinds[value];
     LIGHT_KINDS(DEFINE_KIND)
 #undef DEFINE_KIND
-    return defines;
 }
 
 // Whether a dielectric reflects otherwise than one of the index 1.5.
@@ -51,7 +59,6 @@ DeviceScene upload_scene(Device& device, const Scene& scene, const WideBvh& bvh,
                          const Camera& camera, const LightTree* tree, std::size_t points) {
     const Features features = find_features(scene);
     DeviceScene out;
-    out.light_count = static_cast<uint>(scene.lights.size());
     out.packets = device.form().lanes > 1;
     out.primary_packets = out.packets && camera.forward.w == 0;
     out.varies_materials = scene.varies_materials();
@@ -65,9 +72,7 @@ DeviceScene upload_scene(Device& device, const Scene& scene, const WideBvh& bvh,
         .set("vertices", device.share(scene.vertices))
         .set("indices", device.share(scene.indices))
         .set("triangle_materials", device.share(scene.triangle_materials))
-        .set("materials", out.materials)
-        .set("lights", device.upload(tree ? tree->lights : scene.lights))
-        .set("light_count", out.light_count);
+        .set("materials", out.materials);
     if (features.instances) {
         const Buffer<Instance> instances = device.upload(bvh.instances);
         out.arguments.set("instances", instances)
@@ -79,10 +84,6 @@ DeviceScene upload_scene(Device& device, const Scene& scene, const WideBvh& bvh,
     if (features.tangents) out.arguments.set("tangents", device.upload(scene.tangents));
     if (features.colors) out.arguments.set("colors", device.upload(scene.colors));
     if (features.reflections) out.arguments.set("cell_areas", device.upload(scene.cell_areas));
-    if (tree)
-        out.arguments.set("nodes", device.upload(tree->nodes))
-            .set("root_count", static_cast<uint>(tree->roots.size()))
-            .set("second_root", tree->roots.size() > 1 ? tree->roots[1] : 0);
     out.traversal = {{"BVH_WIDTH", static_cast<int>(bvh.width)},
                      {"BVH_BLOCK", static_cast<int>(bvh.block)},
                      {"BVH_STACK", static_cast<int>(bvh.stack)},
@@ -95,12 +96,24 @@ DeviceScene upload_scene(Device& device, const Scene& scene, const WideBvh& bvh,
     out.surfaces["HAS_TANGENTS"] = features.tangents;
     out.surfaces["HAS_COLORS"] = features.colors;
     out.shading = out.traversal;
-    out.shading.merge(kind_defines(features));
+    set_lights(device, scene.lights, tree, out);
     out.shading["HAS_GGX"] = features.ggx;
     if (varies_reflectance(scene)) out.shading["HAS_REFLECTANCE"] = 1;
     out.shading["HAS_REFLECTIONS"] = features.reflections;
     out.emission = {{"HAS_EMISSION", features.emission}};
     return out;
+}
+
+DeviceScene with_lights(Device& device, DeviceScene scene, const std::vector<Light>& lights,
+                        const LightTree* tree) {
+    set_lights(device, lights, tree, scene);
+    scene.shading["HAS_REFLECTIONS"] = 0;
+    return scene;
+}
+
+void set_outgoing(DeviceScene& scene, const Buffer<Outgoing>& outgoing) {
+    scene.arguments.set("outgoing", outgoing);
+    scene.shading["HAS_OUTGOING"] = 1;
 }
 
 }  // namespace manylight

@@ -5,6 +5,7 @@
 #include "device/device.hpp"
 #include "light_tree/light_tree.hpp"
 #include "scene/scene.hpp"
+#include "shared/surface.h"
 
 namespace manylight {
 
@@ -29,5 +30,15 @@ struct DeviceScene {
 [[nodiscard]] DeviceScene upload_scene(Device& device, const Scene& scene, const WideBvh& bvh,
                                        const Camera& camera, const LightTree* tree = nullptr,
                                        std::size_t points = 0);
+
+/// The scene with other lights, as upload_scene() takes them: virtual ones, for instance. Rays of
+/// stage reflections meet the scene's own lights only.
+[[nodiscard]] DeviceScene with_lights(Device& device, DeviceScene scene,
+                                      const std::vector<Light>& lights,
+                                      const LightTree* tree = nullptr);
+
+/// From now on the stages that light points take them for receivers that no camera sees:
+/// `outgoing`[item] belongs to surfaces[item]. Kernels that were made before are not concerned.
+void set_outgoing(DeviceScene& scene, const Buffer<Outgoing>& outgoing);
 
 }  // namespace manylight

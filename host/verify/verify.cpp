@@ -4,6 +4,9 @@
 #include <algorithm>
 #include <cstring>
 
+#include <glm/gtc/constants.hpp>
+
+#include "reference/random.hpp"
 #include "scene/alpha.hpp"
 #include "verify/sampler_checks.hpp"
 
@@ -61,6 +64,7 @@ Verifier::Verifier(Device device, const Scene& scene, const Camera& camera,
     : device_(device),
       scene_(copy_to_change(scene, varied_)),
       camera_(camera),
+      view_(camera),
       options_(options),
       tiles_(choose_tiles(options, scene.lights.size())),
       reach_(reach_of(scene, camera)),
@@ -77,6 +81,13 @@ Verifier::Verifier(Device device, const Scene& scene, const Camera& camera,
     GBufferStage(device_, device_scene_).trace(tiles_, {}, surfaces_);
     keep_materials();
     found_ = surfaces_.download();
+    if (options.receivers) {
+        outgoing_ = device_.allocate<Outgoing>(points_);
+        set_outgoing(device_scene_, outgoing_);
+        set_outgoing(tree_scene_, outgoing_);
+        clustering_ = Clustering(device_, device_scene_, options.clusters, tiles_.count);
+        send_out(found_);
+    }
     if (scene.lights.empty()) return;
     clustering_.build(tiles_, surfaces_, [](std::size_t) {});
     const std::vector<uint> words =
@@ -87,6 +98,28 @@ Verifier::Verifier(Device device, const Scene& scene, const Camera& camera,
 
 void Verifier::keep_materials() {
     if (varied_) varied_->materials = device_scene_.materials.download();
+}
+
+void Verifier::send_out(const std::vector<Surface>& points) {
+    if (!options_.receivers) return;
+    std::vector<Outgoing> outgoing(points.size());
+    for (std::size_t item = 0; item < points.size(); ++item) {
+        const auto bits =
+            reference::random_bits(static_cast<uint>(item), 0, 0x7fffffffu, options_.seed);
+        const auto u = [&](int i) { return reference::unit_fraction(bits[i]); };
+        // Half of the way to anywhere on the sphere: on the side of the normal.
+        const double z = 2 * u(0) - 1;
+        const double radius = 0.5 * std::sqrt(std::max(1 - z * z, 0.0));
+        const double phi = 2 * glm::pi<double>() * u(1);
+        const glm::dvec3 normal =
+            points[item].position.w < 0 ? glm::dvec3(0, 0, 1) : glm::dvec3(points[item].normal);
+        const glm::dvec3 direction = glm::normalize(
+            normal + glm::dvec3(radius * std::cos(phi), radius * std::sin(phi), 0.5 * z));
+        outgoing[item] = {float4(glm::vec3(direction), 0),
+                          float4(0.25 + u(2), 0.25 + u(3), 1.25 - u(2), 0)};
+    }
+    outgoing_.upload(outgoing);
+    view_ = reference::Viewers(std::move(outgoing));
 }
 
 Buffer<Surface> Verifier::trace(const Tiles& tiles, const PixelSample& sample) {
@@ -100,6 +133,12 @@ std::vector<Check> Verifier::all() {
     std::vector<Check> checks = {layout(),        random(),     gbuffer(false),
                                  gbuffer(true),   clusters(),   representatives(),
                                  contributions(), refinement(), accumulate()};
+    for (Check& check : lighting()) checks.push_back(std::move(check));
+    return checks;
+}
+
+std::vector<Check> Verifier::lighting() {
+    std::vector<Check> checks;
     for (const Sampler& sampler : all_samplers())
         for (Check& check : checks_of(sampler).run(*this, sampler))
             checks.push_back(std::move(check));

@@ -54,6 +54,9 @@ struct VerifyOptions {
     uint seed = 1;
     ClusterOptions clusters;
     std::size_t most_entries = 40'000;  // of a stage that the reference evaluates
+    // Points are no pixels to the stages that light them: their light goes in directions drawn at
+    // random, with throughputs drawn at random.
+    bool receivers = false;
 };
 
 /// Runs the stages on a device and judges each by the reference. The scene's lights are complete.
@@ -82,7 +85,7 @@ class Verifier {
     [[nodiscard]] Device& device() { return device_; }
     [[nodiscard]] const Scene& scene() const { return scene_; }
     [[nodiscard]] const std::vector<Light>& lights() const { return scene_.lights; }
-    [[nodiscard]] const Camera& camera() const { return camera_; }
+    [[nodiscard]] const reference::Viewers& view() const { return view_; }
     [[nodiscard]] const VerifyOptions& options() const { return options_; }
     [[nodiscard]] const Tiles& tiles() const { return tiles_; }
     [[nodiscard]] const LightTree& tree() const { return tree_; }
@@ -96,7 +99,10 @@ class Verifier {
         return sampler.tree ? tree_scene_ : device_scene_;
     }
 
-    /// All of them, for every sampler in the table.
+    /// Those of every sampler in the table, and reflections.
+    [[nodiscard]] std::vector<Check> lighting();
+
+    /// All of them.
     [[nodiscard]] std::vector<Check> all();
 
   private:
@@ -110,11 +116,15 @@ class Verifier {
     // Surfaces beside surfaces_; where the scene varies materials, the last ones' are in scene_.
     [[nodiscard]] Buffer<Surface> trace(const Tiles& tiles, const PixelSample& sample);
     void keep_materials();
+    // Where the light of a batch's points is to go, for what is launched and judged next.
+    void send_out(const std::vector<Surface>& points);
 
     Device device_;
     std::optional<Scene> varied_;  // a copy that is changed, where the scene needs one
     const Scene& scene_;
     Camera camera_;
+    reference::Viewers view_;  // of the points that are lit
+    Buffer<Outgoing> outgoing_;
     VerifyOptions options_;
     Tiles tiles_;  // those in the image's middle, as many as the matrix may have
     float reach_;

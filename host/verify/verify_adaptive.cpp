@@ -16,6 +16,8 @@
 namespace manylight {
 namespace {
 
+using reference::Viewers;
+
 constexpr uint most_tiles = 9;
 constexpr uint probe_rays = 4;
 constexpr double control = 0.8;
@@ -41,13 +43,14 @@ struct Run {
     std::vector<float4> estimates;
 
     Run(Device& device, const DeviceScene& scene, Tiles all, uint cut_size, uint seed,
-        std::size_t first_point)
+        std::size_t first_point, const std::function<void(const std::vector<Surface>&)>& ready)
         : lanes(device.form().pixels), tiles(all), sample{3, seed, false} {
         tiles.count = std::min(tiles.count, most_tiles);
         first.tile_count = second.tile_count = tiles.count;
         Buffer<Surface> points = device.allocate<Surface>(item_count(tiles));
         GBufferStage(device, scene).trace(tiles, {}, points, first_point);
         surfaces = points.download();
+        ready(surfaces);
         Cuts cuts(device, tiles.count);
         CutStage(device, scene).make(tiles, points, {cut_size, probe_rays, seed}, cuts);
         nodes = cuts.nodes.download();
@@ -91,12 +94,12 @@ struct Run {
 };
 
 Check check_cuts(const Run& run, const LightTree& tree, const Scene& scene,
-                 const reference::Tracer& tracer, const Camera& camera, uint cut_size) {
+                 const reference::Tracer& tracer, const Viewers& view, uint cut_size) {
     Check check{.stage = "cuts", .tolerance = "none, but for close calls"};
     for (uint tile = 0; tile < run.tiles.count; ++tile) {
         const reference::TileCut expected =
-            reference::make_cut(tree, scene, tracer, camera, run.tiles, tile, run.surfaces,
-                                cut_size, probe_rays, run.sample.seed);
+            reference::make_cut(tree, scene, tracer, view, run.tiles, tile, run.surfaces, cut_size,
+                                probe_rays, run.sample.seed);
         // Whatever rounding does: every light is in one node, in order.
         uint next = 0;
         for (uint slot = 0; slot < run.sizes[tile]; ++slot) {
@@ -182,7 +185,8 @@ Check check_visibility(const Run& run, const LightTree& tree) {
 
 // The pixels that are drawn together with pixel p of the second pass; `starts`: where their draws
 // start, which matters to which nodes are drawn alone.
-std::vector<reference::DrawnPixel> group_of(const Run& run, std::size_t p, bool starts) {
+std::vector<reference::DrawnPixel> group_of(const Run& run, const Viewers& view, std::size_t p,
+                                            bool starts) {
     std::vector<reference::DrawnPixel> pixels;
     for (std::size_t lane = 0; lane < run.lanes; ++lane) {
         const std::size_t item = Run::item(run.second, p / run.lanes * run.lanes + lane);
@@ -190,6 +194,7 @@ std::vector<reference::DrawnPixel> group_of(const Run& run, std::size_t p, bool 
         const glm::uvec2 at = item_pixel(run.tiles, item);
         reference::DrawnPixel& pixel = pixels.emplace_back(reference::DrawnPixel{
             run.hit(item) ? &run.surfaces[item] : nullptr,
+            view.of(item),
             starts
                 ? reference::draw_starts(at.x, at.y, run.second, run.sample.index, run.sample.seed)
                 : reference::Starts{0.5, 0.5},
@@ -209,7 +214,7 @@ bool agree(const std::vector<DrawnNode>& found, const auto& expected) {
 }
 
 // The draws of the second pass, a group of pixels at a time.
-Check check_weights(const Run& run, const LightTree& tree, const Scene& scene, const Camera& camera,
+Check check_weights(const Run& run, const LightTree& tree, const Scene& scene, const Viewers& view,
                     std::size_t most_entries) {
     Check check{.stage = "weights", .tolerance = node_tolerance};
     const std::size_t groups = pass_pixels(run.second) / run.lanes;
@@ -220,10 +225,11 @@ Check check_weights(const Run& run, const LightTree& tree, const Scene& scene, c
     for (std::size_t group = 0; group < groups; group += stride) {
         const std::size_t tile =
             Run::item(run.second, run.lanes * group) / (std::size_t{ADAPTIVE_TILE} * ADAPTIVE_TILE);
-        const std::vector<reference::DrawnPixel> pixels = group_of(run, run.lanes * group, true);
+        const std::vector<reference::DrawnPixel> pixels =
+            group_of(run, view, run.lanes * group, true);
         const std::vector<reference::NodeDraws> expected = reference::draw_nodes(
-            tree, scene, camera, std::span(run.nodes).subspan(tile * CUT_CAPACITY, run.sizes[tile]),
-            pixels, run.budget);
+            tree, scene, std::span(run.nodes).subspan(tile * CUT_CAPACITY, run.sizes[tile]), pixels,
+            run.budget);
         for (std::size_t lane = 0; lane < run.lanes; ++lane) {
             if (expected[lane].uncertain &&
                 !agree(run.drawn[run.lanes * group + lane], expected[lane].draws)) {
@@ -253,7 +259,7 @@ Check check_weights(const Run& run, const LightTree& tree, const Scene& scene, c
 
 // The estimates of the second pass, from what it drew.
 Check check_samples(const Run& run, const LightTree& tree, const Scene& scene,
-                    const reference::Tracer& tracer, const Camera& camera,
+                    const reference::Tracer& tracer, const Viewers& view,
                     std::size_t most_entries) {
     Check check{.stage = "samples (adaptive)", .tolerance = node_tolerance};
     const std::size_t pixels = pass_pixels(run.second);
@@ -264,7 +270,7 @@ Check check_samples(const Run& run, const LightTree& tree, const Scene& scene,
         if (!run.hit(item)) continue;
         const std::size_t tile = item / (std::size_t{ADAPTIVE_TILE} * ADAPTIVE_TILE);
         const std::size_t cell = item / 16 % 64;
-        const reference::Point point{scene, camera, run.surfaces[item]};
+        const reference::Point point{scene, view.of(item), run.surfaces[item]};
         const glm::uvec2 at = item_pixel(run.tiles, item);
         const auto visibility = [&](uint slot) {
             return double{run.visible[run.place(tile, slot, cell)]};
@@ -282,14 +288,15 @@ Check check_samples(const Run& run, const LightTree& tree, const Scene& scene,
         // The control variate: of all nodes, as they were refined. Those are the cut's nodes, but
         // for what the pixels of the group wanted: its sum comes from the same reference.
         const reference::NodeDraws own = reference::draw_nodes(
-            tree, scene, camera, std::span(run.nodes).subspan(tile * CUT_CAPACITY, run.sizes[tile]),
-            group_of(run, p, false), run.budget)[p % run.lanes];
+            tree, scene, std::span(run.nodes).subspan(tile * CUT_CAPACITY, run.sizes[tile]),
+            group_of(run, view, p, false), run.budget)[p % run.lanes];
         sum += control * own.control;
         magnitude += glm::length(own.control);
         // What rounding does to single lights, such as spots with sharp edges.
         const auto light_rounding = [&] {
             const auto of = [&](const Light& light, const glm::dvec2& u) {
-                return reference::rounding_slack(point.surface, point.material(), camera, light, u);
+                return reference::rounding_slack(point.surface, point.material(), point.viewer,
+                                                 light, u);
             };
             const auto of_node = [&](uint node) {
                 const Light& light = tree.lights[tree.nodes[node].first];
@@ -325,7 +332,7 @@ Check check_samples(const Run& run, const LightTree& tree, const Scene& scene,
             const glm::dvec2 on_light(reference::unit_fraction(bits[1]),
                                       reference::unit_fraction(bits[2]));
             const reference::Unshadowed term = reference::unshadowed(
-                point.surface, point.material(), camera, tree.lights[d.light], on_light);
+                point.surface, point.material(), point.viewer, tree.lights[d.light], on_light);
             drawn.push_back({&tree.lights[d.light], on_light, 1 / (double{share} * d.probability)});
             if (term.value == glm::dvec3(0)) continue;
             const glm::dvec3 value = term.value / (double{share} * d.probability);
@@ -357,12 +364,12 @@ std::vector<Check> Verifier::adaptive(uint cut_size) {
     Tiles tiles = all_tiles(options_.width, options_.height, ADAPTIVE_TILE);
     tiles.first = tiles.count > most_tiles ? (tiles.count - most_tiles) / 2 : 0;
     tiles.count -= tiles.first;
-    const Run run(device_, tree_scene_, tiles, cut_size, options_.seed, points_);
+    const Run run(device_, tree_scene_, tiles, cut_size, options_.seed, points_,
+                  [this](const std::vector<Surface>& points) { send_out(points); });
     keep_materials();
-    return {check_cuts(run, tree_, scene_, tracer_, camera_, cut_size),
-            check_visibility(run, tree_),
-            check_weights(run, tree_, scene_, camera_, 10 * options_.most_entries),
-            check_samples(run, tree_, scene_, tracer_, camera_, options_.most_entries)};
+    return {check_cuts(run, tree_, scene_, tracer_, view_, cut_size), check_visibility(run, tree_),
+            check_weights(run, tree_, scene_, view_, 10 * options_.most_entries),
+            check_samples(run, tree_, scene_, tracer_, view_, options_.most_entries)};
 }
 
 }  // namespace manylight

@@ -37,7 +37,7 @@ Verification verify_all(Device device, const VerifyOptions& options,
         out.coverage.add(device.take_launched(), found.checks);
         out.scenes.push_back(std::move(found));
         progress(static_cast<double>(out.scenes.size()) /
-                 (2 * static_cast<double>(scenes.size()) + 1));
+                 (2 * static_cast<double>(scenes.size()) + 2));
     };
     for (const VerifyScene& made : scenes) {
         SceneChecks found{made.name,
@@ -58,6 +58,16 @@ Verification verify_all(Device device, const VerifyOptions& options,
         found.name += ", orthographic";
         found.checks = {flat.gbuffer(false), flat.gbuffer(true), flat.contributions(),
                         flat.reflections()};
+        take(found);
+        // Points that are no pixels: which kernels light them.
+        if (made.name != "mirrors") continue;
+        VerifyOptions of_receivers = options;
+        of_receivers.receivers = true;
+        Verifier lit(device, made.scene, make_camera(made.view, options.width, options.height),
+                     of_receivers);
+        found.name = made.name + ", receivers that no camera sees";
+        found.checks = lit.lighting();
+        found.checks.push_back(lit.contributions());
         take(found);
     }
     take({"veil", "a shade that is there by chance", 4, 1, 32, 32,

@@ -78,13 +78,14 @@ Check Verifier::contributions() {
         }
         const Surface& surface = found_[representative];
         const Material& material = scene_.materials[surface.shading];
+        const reference::Viewer viewer = view_.of(representative);
         const Light& light = scene_.lights[i % lights];
         const reference::Contribution expected =
-            reference::contribution(tracer_, surface, material, camera_, light);
+            reference::contribution(tracer_, surface, material, viewer, light);
         const double found = std::abs(matrix_[i]);
         double tolerance = shading_roundings * epsilon * expected.value;
         if (std::abs(found - expected.value) > tolerance / 4)
-            tolerance += reference::rounding_slack(surface, material, camera_, light,
+            tolerance += reference::rounding_slack(surface, material, viewer, light,
                                                    reference::centroid(light));
         check.compare(std::abs(found - expected.value), tolerance,
                       fmt::format("{}: {} is not {}", where, found, expected.value),

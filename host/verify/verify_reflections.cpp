@@ -19,11 +19,12 @@ Check Verifier::reflections() {
     const float there = 0x1p-10f;
     Buffer<float4> estimates =
         device_.upload(std::vector<float4>(item_count(tiles_), float4(there)));
+    send_out(found_);
     ReflectionStage(device_, device_scene_).add(tiles_, sample, surfaces_, estimates);
     const std::vector<float4> found = estimates.download();
     reference::for_each_pixel(tiles_, [&](uint x, uint y, std::size_t item) {
         const auto judge = [&](bool closely) {
-            return reference::reflection(scene_, tracer_, camera_, found_[item],
+            return reference::reflection(scene_, tracer_, view_.of(item), found_[item],
                                          y * tiles_.width + x, sample.index, sample.seed, closely);
         };
         reference::Reflection expected = judge(false);

@@ -96,12 +96,14 @@ Check Verifier::samples(const Sampler& sampler) {
                       std::max(tiles.size, tiles_.size), options_.width, count, options_.clusters,
                       values_of(sampler)});
     drawing->prepare();
+    send_out(found_);
     if (!sampler.all_lights) drawing->begin(tiles_, surfaces_, options_.seed, [](std::size_t) {});
     const std::unique_ptr<reference::Sampler> judge_sampler =
         checks_of(sampler).reference(*drawing, {scene_, tree_});
     const PixelSample sample{2, options_.seed, false};
     Buffer<Surface> surfaces = trace(tiles, {});
     const std::vector<Surface> points = surfaces.download();
+    send_out(points);
     Estimates estimates{device_.allocate<float4>(item_count(tiles)),
                         device_.allocate<float4>(item_count(tiles))};
     drawing->draw(tiles, sample, count, surfaces, estimates,
@@ -115,7 +117,7 @@ Check Verifier::samples(const Sampler& sampler) {
     };
     const auto judge_pixel = [&](uint x, uint y, std::size_t item, bool closely) {
         return judge_sampler->estimate(
-            tracer_, {scene_, camera_, points[item]},
+            tracer_, {scene_, view_.of(item), points[item]},
             {item, y * tiles.width + x, sample.index, sample.seed, count, closely});
     };
     std::vector<Pixel> agreeing;

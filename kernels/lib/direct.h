@@ -14,7 +14,10 @@ typedef struct Receiver {
     float3 position;
     float3 normal;
     float3 horizon;
-    float3 to_camera;
+    float3 outgoing;  // unit, where its light goes
+#if HAS_OUTGOING
+    float3 throughput;
+#endif
     float offset;
     bool reflects;  // stage reflections takes part in what the GGX lobe reflects
     Material material;
@@ -22,20 +25,26 @@ typedef struct Receiver {
 
 static bool surface_missed(__global const Surface* surface) { return surface->position.w < 0.0f; }
 
-static Receiver make_receiver(__global const Surface* surface, __global const Material* materials,
-                              Camera camera) {
+static Receiver make_receiver(__global const Surface* surfaces, uint item,
+                              __global const Material* materials, View view) {
+    __global const Surface* surface = surfaces + item;
     Receiver r;
     r.position = surface->position.xyz;
     r.normal = surface->normal.xyz;
     r.horizon = surface->horizon.xyz;
     r.offset = surface->horizon.w;
-    r.to_camera = direction_to_camera(camera, r.position);
+#if HAS_OUTGOING
+    r.outgoing = view[item].direction.xyz;
+    r.throughput = view[item].throughput.xyz;
+#else
+    r.outgoing = direction_to_camera(view, r.position);
+#endif
     r.material = materials[surface->shading];
     r.reflects = false;
 #if HAS_REFLECTIONS
     r.reflects = (r.material.base_color.w > 0.0f || r.material.specular > 0.0f) &&
                  r.material.roughness < REFLECTING_ALPHA &&
-                 dot(r.normal, r.to_camera) > LEAST_COSINE;
+                 dot(r.normal, r.outgoing) > LEAST_COSINE;
 #endif
     return r;
 }
@@ -43,8 +52,9 @@ static Receiver make_receiver(__global const Surface* surface, __global const Ma
 // Where shadow rays start.
 static float3 shadow_origin(const Receiver* r) { return r->position + r->horizon * r->offset; }
 
-// f Le G, cd/m2, of a light (of its point u), without visibility and without what is left to stage
-// reflections; 0 if the light is behind the surface. `shadow` gets the segment that has to be free.
+// f Le G times the throughput, cd/m2, of a light (of its point u), without visibility and without
+// what is left to stage reflections; 0 if the light is behind the surface. `shadow` gets the
+// segment that has to be free.
 static float3 unshadowed(const Receiver* r, __global const Light* light, float2 u, Ray* shadow) {
     const LightSample s = sample_light(light, r->position, u);
     const float cosine = dot(r->normal, s.direction);
@@ -55,9 +65,14 @@ static float3 unshadowed(const Receiver* r, __global const Light* light, float2 
 #if HAS_DIRECTIONAL
     if (s.infinite) shadow->end = directional_end(light, shadow->origin);
 #endif
-    return brdf(r->material, r->normal, s.direction, r->to_camera,
-                r->reflects ? s.solid_angle : 0.0f) *
-           s.emitted * cosine;
+    const float3 value =
+        brdf(r->material, r->normal, s.direction, r->outgoing, r->reflects ? s.solid_angle : 0.0f) *
+        s.emitted * cosine;
+#if HAS_OUTGOING
+    return value * r->throughput;
+#else
+    return value;
+#endif
 }
 
 #endif

@@ -4,6 +4,7 @@
 #ifndef MANYLIGHT_LIB_RECEIVERS_N_H
 #define MANYLIGHT_LIB_RECEIVERS_N_H
 
+#include "lib/camera.h"
 #include "lib/cells.h"
 #include "lib/lanes.h"
 
@@ -48,7 +49,24 @@ INLINE void load_materials_n(__global const Material* materials, uint_n indices,
 }
 #undef SET_LANES
 
-INLINE Receivers_n load_receivers_n(Tiles tiles, Pass pass, uint group, Camera camera,
+#if HAS_OUTGOING
+// Where the light of the lanes' items goes, and their throughput.
+INLINE void load_outgoing_n(View view, uint_n items, Points_n* p) {
+    for (uint lane = 0u; lane < LANES; ++lane) {
+        __global const Outgoing* o = view + UINT_LANE(items, lane);
+        SET_LANE(p->through_red, lane, o->throughput.x);
+        SET_LANE(p->through_green, lane, o->throughput.y);
+        SET_LANE(p->through_blue, lane, o->throughput.z);
+#if HAS_GGX
+        SET_LANE(p->vx, lane, o->direction.x);
+        SET_LANE(p->vy, lane, o->direction.y);
+        SET_LANE(p->vz, lane, o->direction.z);
+#endif
+    }
+}
+#endif
+
+INLINE Receivers_n load_receivers_n(Tiles tiles, Pass pass, uint group, View view,
                                     __global const Surface* surfaces,
                                     __global const Material* materials) {
     const float_n zero = (float_n)(0.0f), one = (float_n)(1.0f);
@@ -83,25 +101,30 @@ INLINE Receivers_n load_receivers_n(Tiles tiles, Pass pass, uint group, Camera c
     r.points.red = select(zero, r.points.red, r.valid);
     r.points.green = select(zero, r.points.green, r.valid);
     r.points.blue = select(zero, r.points.blue, r.valid);
+#if HAS_OUTGOING
+    load_outgoing_n(view, items, &r.points);
+#endif
 #if HAS_GGX
     Points_n* p = &r.points;
     p->metallic = select(zero, p->metallic, r.valid);
     p->specular = select(zero, p->specular, r.valid);
     const int_n shiny = (p->metallic > 0.0f) | (p->specular > 0.0f);
     p->glossy = lanes_n(shiny) != 0u;
-    p->vx = (float_n)(-camera.forward.x);
-    p->vy = (float_n)(-camera.forward.y);
-    p->vz = (float_n)(-camera.forward.z);
-    if (camera.forward.w == 0.0f) {
-        p->vx = camera.origin.x - p->px;
-        p->vy = camera.origin.y - p->py;
-        p->vz = camera.origin.z - p->pz;
+#if !HAS_OUTGOING
+    p->vx = (float_n)(-view.forward.x);
+    p->vy = (float_n)(-view.forward.y);
+    p->vz = (float_n)(-view.forward.z);
+    if (view.forward.w == 0.0f) {
+        p->vx = view.origin.x - p->px;
+        p->vy = view.origin.y - p->py;
+        p->vz = view.origin.z - p->pz;
         const float_n squared = dot3_n(p->vx, p->vy, p->vz, p->vx, p->vy, p->vz);
         const float_n inverse = inverse_root_n(max(squared, 1e-30f));
         p->vx *= inverse;
         p->vy *= inverse;
         p->vz *= inverse;
     }
+#endif
 #if HAS_REFLECTIONS
     const float_n out = dot3_n(p->nx, p->ny, p->nz, p->vx, p->vy, p->vz);
     r.from.reflects =
@@ -124,6 +147,11 @@ INLINE Points_n permute_points(const Points_n* all, uint_n lanes) {
     PERMUTE(red);
     PERMUTE(green);
     PERMUTE(blue);
+#if HAS_OUTGOING
+    PERMUTE(through_red);
+    PERMUTE(through_green);
+    PERMUTE(through_blue);
+#endif
 #if HAS_GGX
     PERMUTE(vx);
     PERMUTE(vy);

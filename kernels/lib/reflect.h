@@ -7,8 +7,11 @@ typedef struct NAMED(Points) {
     REAL px, py, pz;        // positions
     REAL nx, ny, nz;        // unit shading normals
     REAL red, green, blue;  // base colours
+#if HAS_OUTGOING
+    REAL through_red, through_green, through_blue;  // throughput
+#endif
 #if HAS_GGX
-    REAL vx, vy, vz;  // unit, to the camera
+    REAL vx, vy, vz;  // unit, where their light goes
     REAL metallic, alpha, specular;
 #if HAS_REFLECTANCE
     REAL f0_red, f0_green, f0_blue;  // Material::reflectance
@@ -39,11 +42,11 @@ INLINE REAL NAMED(soft)(REAL k, REAL v) {
     return WHERE(k >= 0.0f, t, 0.25f * v * NAMED(inverse)(max(t, (REAL)(1e-30f))));
 }
 
-// Radiance reflected to the camera per illuminance from unit directions w: glTF's BRDF (lib/brdf.h)
-// with a lobe that is widened by the lights' squared angular spread, times cosines and all else in
-// `factor`. What stage reflections has of a light of `solid_angle` is left to it.
-INLINE NAMED(Color) NAMED(reflect)(const NAMED(Points) * p, REAL wx, REAL wy, REAL wz, REAL spread,
-                                   REAL solid_angle, REAL factor) {
+// Radiance reflected per illuminance from unit directions w: glTF's BRDF (lib/brdf.h) with a lobe
+// that is widened by the lights' squared angular spread, times cosines and all else in `factor`.
+// What stage reflections has of a light of `solid_angle` is left to it.
+INLINE NAMED(Color) NAMED(reflect_all)(const NAMED(Points) * p, REAL wx, REAL wy, REAL wz,
+                                       REAL spread, REAL solid_angle, REAL factor) {
     NAMED(Color) c;
 #if HAS_GGX
     if (p->glossy) {
@@ -101,6 +104,18 @@ INLINE NAMED(Color) NAMED(reflect)(const NAMED(Points) * p, REAL wx, REAL wy, RE
     c.red = factor * p->red;
     c.green = factor * p->green;
     c.blue = factor * p->blue;
+    return c;
+}
+
+// The same times the throughput.
+INLINE NAMED(Color) NAMED(reflect)(const NAMED(Points) * p, REAL wx, REAL wy, REAL wz, REAL spread,
+                                   REAL solid_angle, REAL factor) {
+    NAMED(Color) c = NAMED(reflect_all)(p, wx, wy, wz, spread, solid_angle, factor);
+#if HAS_OUTGOING
+    c.red *= p->through_red;
+    c.green *= p->through_green;
+    c.blue *= p->through_blue;
+#endif
     return c;
 }
 

@@ -13,7 +13,7 @@
 // and values[48 * item + 16 * channel + lane], what each contributes where nothing is in its way,
 // cd/m2. Neighbouring samples that are the same point share a ray, samples without a value have
 // none.
-KERNEL void samples_draw(Tiles tiles, Camera camera, __global const Surface* surfaces,
+KERNEL void samples_draw(Tiles tiles, VIEW_PARAMETERS, __global const Surface* surfaces,
                          __global const Material* materials, __global const Light* lights,
                          uint light_count SAMPLER_PARAMETERS, uint pixel_sample, uint seed,
                          uint first_sample, uint end_sample, uint sample_count,
@@ -22,7 +22,7 @@ KERNEL void samples_draw(Tiles tiles, Camera camera, __global const Surface* sur
     if (item >= tiles.count * tiles.size * tiles.size) return;
     uint lane = 0u;
     if (item_in_image(tiles, item) && !surface_missed(surfaces + item)) {
-        const Receiver receiver = make_receiver(surfaces + item, materials, camera);
+        const Receiver receiver = make_receiver(surfaces, item, materials, VIEW);
         const uint2 pixel = item_pixel(tiles, item);
         __global float* value_lanes = values + 48 * (ulong)item;
         uint last = ~0u;

@@ -21,6 +21,14 @@ typedef struct Surface {
 } Surface;
 SHARED_SIZE(Surface, 64)
 
+/// Of a receiver that no camera sees (a vertex of a path, a gather point): where its light goes,
+/// and what of it counts. Its Surface's normals are on the side of `direction`.
+typedef struct Outgoing {
+    float4 direction;   // xyz: unit
+    float4 throughput;  // rgb: what its radiance is multiplied by
+} Outgoing;
+SHARED_SIZE(Outgoing, 32)
+
 /// Shadow rays start off a surface with unit normal n by this times the sum over axes of |n_i| p_i,
 /// where p bounds what single precision rounds of the point, along each axis: its coordinate, of an
 /// instance (|to_world| |to_object| |c|)_i besides, where c is the farthest corner from its place,

@@ -19,13 +19,13 @@ Choice ByCandidates::choose(const Point& point, const Draw& draw) const {
                                        candidates * draw.sample_count, step_bits(draw.bits[0], i));
         const Found found = search(power_cdf_, target);
         const double contribution =
-            luminance(unshadowed(point.surface, point.material(), point.camera,
+            luminance(unshadowed(point.surface, point.material(), point.viewer,
                                  point.scene.lights[found.light], u)
                           .value);
         const double weight = contribution / found.width;
         sum += weight;
         if (draw.judge)
-            slack += rounding_slack(point.surface, point.material(), point.camera,
+            slack += rounding_slack(point.surface, point.material(), point.viewer,
                                     point.scene.lights[found.light], u) /
                      found.width;
         if (sum == 0) continue;

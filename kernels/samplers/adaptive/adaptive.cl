@@ -268,7 +268,7 @@ INLINE float_n draw_starts(uint_n x, uint_n y, float shift) {
 // and [... + LANES]: their number; packet_counts[group]: those of the group; base[3 * LANES * group
 // + LANES * rgb + lane]: the control variate of all nodes, cd/m2; expectations[] by pixels of the
 // batch's pass. One group per work-item.
-KERNEL void adaptive_draw(Tiles tiles, Camera camera, Pass pass, Budget budget,
+KERNEL void adaptive_draw(Tiles tiles, VIEW_PARAMETERS, Pass pass, Budget budget,
                           __global const Surface* surfaces, __global const Material* materials,
                           __global const Light* lights, uint light_count,
                           __global const LightNode* nodes, __global const uint* cut_nodes,
@@ -281,7 +281,7 @@ KERNEL void adaptive_draw(Tiles tiles, Camera camera, Pass pass, Budget budget,
     if (group >= pass_groups(pass)) return;
     const uint quadrant = group_quadrant(pass, group);
     const uint tile = pass.first_tile + quadrant / 4u;
-    const Receivers_n receivers = load_receivers_n(tiles, pass, group, camera, surfaces, materials);
+    const Receivers_n receivers = load_receivers_n(tiles, pass, group, VIEW, surfaces, materials);
     const uint4 shifts =
         random_bits(16u * pass.number + pass.first, pixel_sample, RANDOM_DRAW_SHIFT, seed);
     float_n position = draw_starts(receivers.x, receivers.y, unit_float(shifts.x));

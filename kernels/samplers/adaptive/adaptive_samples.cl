@@ -56,7 +56,7 @@ INLINE Descent_n descend_n(__global const LightNode* nodes, __global const Light
 // Draws a light for each drawn node of a group, and its ray: a pixel's draw i is lane i % 16 of its
 // packet i / 16; values as in lib/samples.h. Takes the control variate of what is drawn away from
 // base[]. One group per work-item.
-KERNEL void adaptive_aim(Tiles tiles, Camera camera, Pass pass, __global const Surface* surfaces,
+KERNEL void adaptive_aim(Tiles tiles, VIEW_PARAMETERS, Pass pass, __global const Surface* surfaces,
                          __global const Material* materials, __global const Light* lights,
                          __global const LightNode* nodes, uint pixel_sample, uint seed,
                          __global const uint* draws, __global const uint* draw_counts,
@@ -66,7 +66,7 @@ KERNEL void adaptive_aim(Tiles tiles, Camera camera, Pass pass, __global const S
     if (group >= pass_groups(pass)) return;
     const uint size = draw_counts[group];
     if (size == 0u) return;
-    const Receivers_n receivers = load_receivers_n(tiles, pass, group, camera, surfaces, materials);
+    const Receivers_n receivers = load_receivers_n(tiles, pass, group, VIEW, surfaces, materials);
     __global const uint* own_packets = pixel_packets + 2u * LANES * group;
     for (uint lane = 0u; lane < LANES; ++lane)
         for (uint i = 0u; i < own_packets[LANES + lane]; ++i) {

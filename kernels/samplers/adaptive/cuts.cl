@@ -21,10 +21,15 @@ static Points_1 point_of(const Receiver* r) {
     p.red = r->material.base_color.x;
     p.green = r->material.base_color.y;
     p.blue = r->material.base_color.z;
+#if HAS_OUTGOING
+    p.through_red = r->throughput.x;
+    p.through_green = r->throughput.y;
+    p.through_blue = r->throughput.z;
+#endif
 #if HAS_GGX
-    p.vx = r->to_camera.x;
-    p.vy = r->to_camera.y;
-    p.vz = r->to_camera.z;
+    p.vx = r->outgoing.x;
+    p.vy = r->outgoing.y;
+    p.vz = r->outgoing.z;
     p.metallic = r->material.base_color.w;
     p.alpha = r->material.roughness;
     p.specular = r->material.specular;
@@ -111,7 +116,7 @@ static float visible_root(Trials t) { return sqrt((t.passed + PRIOR_SHARE) / (t.
 // cut_nodes[tile * CUT_CAPACITY + slot], in tree order, and probes[...]; cut_sizes[tile]. With up
 // to cut_size lights, every light is a node. Where nothing is hit, the roots are the cut: later
 // pixel samples may hit something.
-KERNEL void cuts_make(Tiles tiles, Camera camera, __global const Surface* surfaces,
+KERNEL void cuts_make(Tiles tiles, VIEW_PARAMETERS, __global const Surface* surfaces,
                       __global const Material* materials, __global const Light* lights,
                       uint light_count, __global const LightNode* nodes, uint root_count,
                       uint second_root, uint cut_size, uint probe_rays, uint seed, BVH_PARAMETERS,
@@ -133,7 +138,7 @@ KERNEL void cuts_make(Tiles tiles, Camera camera, __global const Surface* surfac
     }
     Receiver receivers[REPRESENTATIVES];
     for (uint i = 0u; i < receiver_count; ++i)
-        receivers[i] = make_receiver(surfaces + items[i], materials, camera);
+        receivers[i] = make_receiver(surfaces, items[i], materials, VIEW);
     const uint tile_bits = random_bits(tiles.first + tile, 0u, RANDOM_PROBES, seed).x;
     if (light_count <= cut_size) {
         const uint node_count = 2u * light_count - root_count;
