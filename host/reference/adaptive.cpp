@@ -29,10 +29,11 @@ struct Drawer {
     }
 
     [[nodiscard]] double weight(const Entry& e, const DrawnPixel& p) const {
-        // Its mean is the contribution x V^, of which 0.8 is the control variate's.
+        // Its mean is the contribution x V^, of which a part is the control variate's.
         const double v = p.visible[e.slot];
-        const double variance = tree.nodes[e.node].count > 1 ? 0.5 : 0;
-        return luminance(estimate(e, p)) * std::sqrt(v * (1 + variance - 0.96 * v));
+        const double variance = tree.nodes[e.node].count > 1 ? double{GROUP_VARIANCE} : 0;
+        const double known = CONTROL * (2 - double{CONTROL});
+        return luminance(estimate(e, p)) * std::sqrt(v * (1 + variance - known * v));
     }
 
     // How near a node is to a pixel, for its size: 1 within it.
@@ -59,13 +60,13 @@ std::vector<Entry> refine(const Drawer& drawer, std::span<const uint> cut,
         bool wanted = false;
         for (std::size_t i = 0; i < pixels.size() && node.count > 1; ++i) {
             if (!pixels[i].surface) continue;
-            const double limit = sums[i] * 0.25 / drawer.budget.samples;
+            const double limit = sums[i] * double{REFINED_SHARE} / drawer.budget.samples;
             const double size =
                 drawer.weight(e, pixels[i]) * drawer.nearness(node, *pixels[i].surface);
             wanted = wanted || size > limit;
             if (size > 0 && std::abs(size / limit - 1) < doubtful / 4) uncertain = true;
         }
-        if (!wanted || splits >= 64) {
+        if (!wanted || splits >= MOST_SPLITS) {
             ++at;
             continue;
         }
@@ -128,7 +129,9 @@ NodeDraws draw_pixel(const Drawer& drawer, std::span<const Entry> list, const Dr
     // Where weights are hardly more than rounding, so is what is drawn.
     if (estimates_blur > 2e-4 * sum) d.uncertain = true;
     const double brightness = luminance(d.control);
-    d.variance = std::max(sum * sum - (0.04 - 0.004) * brightness * brightness, 0.0);
+    const double unknown = 1 - double{CONTROL};
+    d.variance = std::max(
+        sum * sum - (unknown * unknown - double{PIXEL_VARIANCE}) * brightness * brightness, 0.0);
     const double samples =
         draw_count(drawer.budget, d.variance, brightness, pixel.starts.rounding, d.uncertain);
     const double scale = draw_scale(tree, list, weights, sum, samples);

@@ -8,6 +8,7 @@
 #include "reference/contributions.hpp"
 #include "reference/random.hpp"
 #include "reference/tiles.hpp"
+#include "shared/adaptive.h"
 
 namespace manylight::reference {
 namespace {
@@ -97,7 +98,7 @@ struct Prober {
         double sum = 0;
         for (const Surface* s : representatives)
             sum += luminance(node_estimate(tree, node, {scene, viewer(*s), *s}));
-        return sum * std::sqrt((seen.passed + 0.7) / (seen.traced + 1));
+        return sum * std::sqrt((seen.passed + double{PRIOR_SHARE}) / (seen.traced + 1));
     }
 };
 
@@ -125,8 +126,8 @@ std::list<Entry> split_nodes(Prober& prober, uint cut_size) {
         const Entry parent = *best;
         for (const uint at : {parent.node + 1, right_child(tree, parent.node)}) {
             Entry child{at, 0, prober.probe(at)};
-            child.rays.traced += parent.rays.traced / 2;
-            child.rays.passed += parent.rays.passed / 2;
+            child.rays.traced += INHERITED * parent.rays.traced;
+            child.rays.passed += INHERITED * parent.rays.passed;
             if (tree.nodes[at].count > 1) child.score = prober.score(at, child.rays);
             cut.insert(best, child);
         }

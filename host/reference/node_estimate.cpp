@@ -60,7 +60,7 @@ double share_in_reach(const LightNode& node, const glm::dvec3& towards, double d
     if (angle >= glm::pi<double>()) return 1;
     const glm::dvec3 axis(node.axis);
     const double inside = -glm::dot(axis, towards) - std::cos(angle) * glm::length(axis);
-    return std::clamp(1 + 20 * inside, 0.0, 1.0);
+    return std::clamp(1 + REACH_EDGE * inside, 0.0, 1.0);
 }
 
 }  // namespace

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "shared/adaptive.h"
+
 namespace manylight::reference {
 
 std::vector<Rays> share_rays(const LightTree& tree, const Tiles& tiles, uint tile,
@@ -29,7 +31,7 @@ std::vector<Rays> share_rays(const LightTree& tree, const Tiles& tiles, uint til
                 lent.passed += share * all[other].totals[i].passed;
             }
         }
-        const double scale = lent.traced > 16 ? 16 / lent.traced : 1;
+        const double scale = lent.traced > MOST_LENT ? MOST_LENT / lent.traced : 1;
         out[slot].traced += scale * lent.traced;
         out[slot].passed += scale * lent.passed;
     }
@@ -51,9 +53,11 @@ std::vector<double> estimate_visibility(std::span<const Rays> totals,
     std::vector<double> visible(64 * size);
     for (std::size_t slot = 0; slot < size; ++slot) {
         Rays group;
-        for (std::size_t i = slot / 8 * 8; i < std::min(slot / 8 * 8 + 8, size); ++i)
+        const std::size_t first = slot / SLOT_GROUP * SLOT_GROUP;
+        for (std::size_t i = first; i < std::min(first + SLOT_GROUP, size); ++i)
             add(group, totals[i]);
-        const double of_slot = shrunk(totals[slot], shrunk(group, shrunk(all, 0.7, 1), 1), 1);
+        const double of_slot =
+            shrunk(totals[slot], shrunk(group, shrunk(all, PRIOR_SHARE, 1), 1), 1);
         for (std::size_t cell = 0; cell < 64; ++cell) visible[64 * slot + cell] = of_slot;
     }
     // Parts of the tile, smaller and smaller, of so many cells.
@@ -68,18 +72,19 @@ std::vector<double> estimate_visibility(std::span<const Rays> totals,
                 add(seen, rays[slot]);
                 expected += rays[slot].traced * visible[64 * slot + part];
             }
-            const double passed = (seen.passed + 1) / (expected + 1);
-            const double stopped = (seen.traced - seen.passed + 1) / (seen.traced - expected + 1);
+            const double passed = (seen.passed + SIGHT_RAYS) / (expected + SIGHT_RAYS);
+            const double stopped =
+                (seen.traced - seen.passed + SIGHT_RAYS) / (seen.traced - expected + SIGHT_RAYS);
             for (std::size_t slot = 0; slot < size; ++slot) {
                 const double share = visible[64 * slot + part];
                 const double odds = share * passed / ((1 - share) * stopped);
-                const double result = shrunk(rays[slot], odds / (1 + odds), 8);
+                const double result = shrunk(rays[slot], odds / (1 + odds), PARENT_RAYS);
                 for (std::size_t cell = part; cell < part + cells; ++cell)
                     visible[64 * slot + cell] = result;
             }
         }
     }
-    for (double& v : visible) v = std::max(v, 0.0005);
+    for (double& v : visible) v = std::max(v, double{LEAST_VISIBILITY});
     return visible;
 }
 

@@ -19,8 +19,6 @@ namespace {
 using reference::Viewers;
 
 constexpr uint most_tiles = 9;
-constexpr uint probe_rays = 4;
-constexpr double control = 0.8;
 constexpr double darkest = 1e-9;  // cd/m2: a light just below the horizon
 constexpr const char* node_tolerance = "1e-3 (some 100 operations, lobes narrower than 1e-3 rad)";
 
@@ -52,7 +50,7 @@ struct Run {
         surfaces = points.download();
         ready(surfaces);
         Cuts cuts(device, tiles.count);
-        CutStage(device, scene).make(tiles, points, {cut_size, probe_rays, seed}, cuts);
+        CutStage(device, scene).make(tiles, points, {cut_size, PROBE_RAYS, seed}, cuts);
         nodes = cuts.nodes.download();
         sizes = cuts.sizes.download();
         probes = cuts.probes.download();
@@ -99,7 +97,7 @@ Check check_cuts(const Run& run, const LightTree& tree, const Scene& scene,
     for (uint tile = 0; tile < run.tiles.count; ++tile) {
         const reference::TileCut expected =
             reference::make_cut(tree, scene, tracer, view, run.tiles, tile, run.surfaces, cut_size,
-                                probe_rays, run.sample.seed);
+                                PROBE_RAYS, run.sample.seed);
         // Whatever rounding does: every light is in one node, in order.
         uint next = 0;
         for (uint slot = 0; slot < run.sizes[tile]; ++slot) {
@@ -290,7 +288,7 @@ Check check_samples(const Run& run, const LightTree& tree, const Scene& scene,
         const reference::NodeDraws own = reference::draw_nodes(
             tree, scene, std::span(run.nodes).subspan(tile * CUT_CAPACITY, run.sizes[tile]),
             group_of(run, view, p, false), run.budget)[p % run.lanes];
-        sum += control * own.control;
+        sum += double{CONTROL} * own.control;
         magnitude += glm::length(own.control);
         // What rounding does to single lights, such as spots with sharp edges.
         const auto light_rounding = [&] {
@@ -304,10 +302,10 @@ Check check_samples(const Run& run, const LightTree& tree, const Scene& scene,
             };
             double slack = 0;
             for (uint slot = 0; slot < run.sizes[tile]; ++slot)
-                slack +=
-                    control * visibility(slot) * of_node(run.nodes[tile * CUT_CAPACITY + slot]);
+                slack += double{CONTROL} * visibility(slot) *
+                         of_node(run.nodes[tile * CUT_CAPACITY + slot]);
             for (const DrawnNode& d : draws)
-                slack += control * visibility(d.slot) / double{d.share} * of_node(d.node);
+                slack += double{CONTROL} * visibility(d.slot) / double{d.share} * of_node(d.node);
             for (const auto& [light, u, weight] : drawn) slack += weight * of(*light, u);
             return slack;
         };
@@ -318,7 +316,7 @@ Check check_samples(const Run& run, const LightTree& tree, const Scene& scene,
             while (first > 0 && draws[first - 1].node == node) --first;
             while (last + 1 < draws.size() && draws[last + 1].node == node) ++last;
             const glm::dvec3 estimate = reference::node_estimate(tree, node, point);
-            const glm::dvec3 taken = control * visibility(slot) / double{share} * estimate;
+            const glm::dvec3 taken = double{CONTROL} * visibility(slot) / double{share} * estimate;
             sum -= taken;
             magnitude += glm::length(taken);
             const auto bits = reference::random_bits(

@@ -7,10 +7,6 @@
 // then.
 #include "lib/inverse.h"
 
-#ifndef REACH_EDGE
-#define REACH_EDGE 20.0f  // 1 / the cosine over which light fades beyond a group's reach
-#endif
-
 #ifndef WIDE_POINTS
 #define WIDE_POINTS 0
 #endif

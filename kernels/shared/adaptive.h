@@ -39,9 +39,42 @@ typedef struct Pass {
 } Pass;
 SHARED_SIZE(Pass, 24)
 
+// The sampler's parameters. What each is worth, `scripts/parameters.sh` prints (docs/adaptive.md);
+// none makes the estimate biased.
+
+/// Shadow rays that a node of the cut is probed with, from up to REPRESENTATIVES pixels of the
+/// tile; one in images so wide that tiles are small in them. What a node's children take over of
+/// them.
+#define PROBE_RAYS 4
+#define REPRESENTATIVES 9
+#define INHERITED 0.5f
+
 /// The prior of a tile's visibility, the share of its shadow rays that pass; it weighs as much as
 /// one ray.
 #define PRIOR_SHARE 0.7f
+
+/// Slots that are neighbours in the tree's order share what is known of them.
+#define SLOT_GROUP 8
+/// What a level of the tile's quadtree is worth to the next smaller one, rays.
+#define PARENT_RAYS 8.0f
+/// The prior of a part of a tile: as many rays pass as expected. It weighs as much as so many
+/// passed and so many stopped rays.
+#define SIGHT_RAYS 1.0f
+/// Trials that neighbouring tiles lend a slot at most.
+#define MOST_LENT 16.0f
+/// V^ at least: what seems hidden is still drawn now and then.
+#define LEAST_VISIBILITY 0.0005f
+
+/// Relative variance of the contribution of a light drawn from a node of several lights, divided by
+/// its probability: the lights of a node differ.
+#define GROUP_VARIANCE 0.5f
+/// Relative variance of a pixel's whole estimate, by the errors of V^ and by the points on lights
+/// with area.
+#define PIXEL_VARIANCE 0.004f
+/// A node is replaced by its children where its weight times its angular size exceeds this share of
+/// the weight of one draw; so many are, at most.
+#define REFINED_SHARE 0.25f
+#define MOST_SPLITS 64
 
 /// How many draws the pixels of a pass get.
 typedef struct Budget {

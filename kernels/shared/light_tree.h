@@ -34,6 +34,9 @@ typedef struct LightNode {
 } LightNode;
 SHARED_SIZE(LightNode, 128)
 
+/// In estimates of groups of spots: 1 / the cosine over which light fades beyond the group's reach.
+#define REACH_EDGE 20.0f
+
 #define NODE_GROUP 100
 #define NODE_DIRECTIONS 101  // a group of directional lights
 

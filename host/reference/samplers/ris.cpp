@@ -2,11 +2,11 @@
 #include "reference/samplers/ris.hpp"
 
 #include "reference/random.hpp"
+#include "shared/ris.h"
 
 namespace manylight::reference {
 
 Choice ByCandidates::choose(const Point& point, const Draw& draw) const {
-    constexpr uint candidates = 32;
     const glm::dvec2 u(unit_fraction(draw.bits[1]), unit_fraction(draw.bits[2]));
     const uint total = power_cdf_.back();
     if (total == 0) return {0, 0};
@@ -14,9 +14,9 @@ Choice ByCandidates::choose(const Point& point, const Draw& draw) const {
     double sum = 0;
     double chosen = 0;
     double slack = 0;
-    for (uint i = 0; i < candidates; ++i) {
+    for (uint i = 0; i < CANDIDATES; ++i) {
         const uint target = stratified(total, i * draw.sample_count + draw.sample,
-                                       candidates * draw.sample_count, step_bits(draw.bits[0], i));
+                                       CANDIDATES * draw.sample_count, step_bits(draw.bits[0], i));
         const Found found = search(power_cdf_, target);
         const double contribution =
             luminance(unshadowed(point.surface, point.material(), point.viewer,
@@ -36,7 +36,7 @@ Choice ByCandidates::choose(const Point& point, const Draw& draw) const {
         chosen = contribution;
     }
     if (chosen == 0) return choice;
-    choice.weight = sum * total / (chosen * candidates * draw.sample_count);
+    choice.weight = sum * total / (chosen * CANDIDATES * draw.sample_count);
     choice.slack = slack / sum;
     return choice;
 }

@@ -50,7 +50,7 @@ Footprint Adaptive::footprint(const SamplerLoad& load) {
 
 void Adaptive::begin(const Tiles& tiles, const Buffer<Surface>& surfaces, uint seed,
                      const RayCount& /*progress*/) {
-    const CutOptions options{CUT_CAPACITY, width_ >= wide_image ? 1u : 4u, seed};
+    const CutOptions options{CUT_CAPACITY, width_ >= wide_image ? 1u : PROBE_RAYS, seed};
     visibility_.counts.clear();
     cut_stage_.make(tiles, surfaces, options, cuts_);
     tiles_ = tiles;

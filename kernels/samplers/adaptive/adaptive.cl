@@ -11,16 +11,6 @@
 #include "lib/node_estimate.h"
 #include "lib/receivers_n.h"
 
-// Relative variance of the contribution of a light drawn from a node of several lights, divided by
-// its probability: the lights of a node differ.
-#define GROUP_VARIANCE 0.5f
-// Relative variance of a pixel's whole estimate, by the errors of V^ and by the points on lights
-// with area.
-#define PIXEL_VARIANCE 0.004f
-// A node is replaced by its children where its weight times its angular size exceeds this share of
-// the weight of one draw.
-#define REFINED_SHARE 0.25f
-#define MOST_SPLITS 64u
 #define MOST_NODES (CUT_CAPACITY + MOST_SPLITS)
 
 // A weighed node: as a drawn one, but for its mark, which says whether it is a single point.

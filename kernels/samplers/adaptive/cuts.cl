@@ -43,12 +43,8 @@ static Points_1 point_of(const Receiver* r) {
     return p;
 }
 
-// Surfaces of a tile that stand for it.
-#define REPRESENTATIVES 9u
 // The dimension of the random numbers of a tile's probes.
 #define RANDOM_PROBES 0xfffffffeu
-// What a node's children take over of its trials.
-#define INHERITED 0.5f
 
 // A cut in work: a list in tree order.
 typedef struct Cut {

@@ -107,9 +107,6 @@ KERNEL void visibility_sum(Tiles tiles, __global const uint* cut_sizes,
     totals[tile * CUT_CAPACITY + slot] = total;
 }
 
-// Trials that neighbouring tiles lend a slot at most.
-#define MOST_LENT 16.0f
-
 // The slot of a tile's cut whose node holds a light.
 static uint find_slot(__global const uint* cut, uint size, __global const LightNode* nodes,
                       uint light) {
@@ -161,13 +158,6 @@ KERNEL void visibility_share(Tiles tiles, __global const LightNode* nodes,
     shared[tile * CUT_CAPACITY + slot] = sum;
 }
 
-// Slots that are neighbours in the tree's order share what is known of them.
-#define GROUP 8u
-// What a level of the tile's quadtree is worth to the next smaller one, rays.
-#define PARENT_RAYS 8.0f
-// V^ at least: what seems hidden is still drawn now and then.
-#define LEAST_VISIBILITY 0.0005f
-
 static float shrink(Trials trials, float towards, float rays) {
     return (trials.passed + rays * towards) / (trials.traced + rays);
 }
@@ -192,10 +182,6 @@ INLINE void add_outcome(Outcome* sum, float_n traced, float_n passed, float_n sh
     sum->expected = fma(traced, share, sum->expected);
 }
 
-// The prior of a part of a tile: as many rays pass as expected. It weighs as much as one passed and
-// one stopped ray.
-#define SIGHT_RAYS 1.0f
-
 // Ratios of observed to expected rays, passed and stopped, of all slots in a part of a tile. They
 // scale the odds of every slot's visibility there, since lights are often hidden together.
 typedef struct Odds {
@@ -215,11 +201,11 @@ INLINE float_n adjust(Odds odds, float_n share) {
     return yes * inverse_n(fma(1.0f - share, odds.stopped, yes));
 }
 
-// visible[...] = V^ of every cell, by shrinkage down a hierarchy: the tile, GROUP slots, the slot,
-// then the slot from 16 x 16, 8 x 8 and 4 x 4 pixels. The prior of each level is the estimate of
-// the one above, its odds adjusted to the part's rays to all slots (Odds). Of tile_count tiles from
-// first_tile on; visible[] holds these alone.
-// LANES cells of a quadrant (16 x 16 pixels) per work-item.
+// visible[...] = V^ of every cell, by shrinkage down a hierarchy: the tile, SLOT_GROUP slots, the
+// slot, then the slot from 16 x 16, 8 x 8 and 4 x 4 pixels. The prior of each level is the estimate
+// of the one above, its odds adjusted to the part's rays to all slots (Odds). Of tile_count tiles
+// from first_tile on; visible[] holds these alone. LANES cells of a quadrant (16 x 16 pixels) per
+// work-item.
 KERNEL void visibility_estimate(uint first_tile, uint tile_count, __global const uint* cut_sizes,
                                 __global const Trials* shared, __global const uint* counts,
                                 uint light_count, __global float* visible) {
@@ -241,9 +227,9 @@ KERNEL void visibility_estimate(uint first_tile, uint tile_count, __global const
     float group_share = 0.0f;
     Outcome of_16 = {zero, zero, zero}, of_8 = of_16, of_4 = of_16;
     for (uint slot = 0u; slot < size; ++slot) {
-        if (slot % GROUP == 0u) {
+        if (slot % SLOT_GROUP == 0u) {
             Trials group = {0.0f, 0.0f};
-            for (uint i = slot; i < min(slot + GROUP, size); ++i) add_trials(&group, own[i]);
+            for (uint i = slot; i < min(slot + SLOT_GROUP, size); ++i) add_trials(&group, own[i]);
             group_share = shrink(group, tile_share, 1.0f);
         }
         const float_n share = (float_n)(shrink(own[slot], group_share, 1.0f));

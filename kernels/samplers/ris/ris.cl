@@ -5,8 +5,7 @@
 #include "lib/direct.h"
 #include "lib/draw.h"
 #include "lib/random.h"
-
-#define CANDIDATES 32u
+#include "shared/ris.h"
 
 #define SAMPLER_PARAMETERS , __global const uint* power_cdf
 #define SAMPLER_ARGUMENTS , power_cdf
