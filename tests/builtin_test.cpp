@@ -5,7 +5,7 @@
 #include <cstring>
 
 #include "error.hpp"
-#include "scene/gltf.hpp"
+#include "scene/gltf/load.hpp"
 #include "support.hpp"
 
 namespace manylight {

@@ -8,7 +8,7 @@
 #include <optional>
 #include <vector>
 
-#include "scene/gltf.hpp"
+#include "scene/gltf/load.hpp"
 #include "support.hpp"
 
 namespace manylight::test {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // What a glTF file means. Refusals are in malformed.py.
-#include "scene/gltf.hpp"
+#include "scene/gltf/load.hpp"
 
 #include <draco/compression/encode.h>
 #include <draco/mesh/triangle_soup_mesh_builder.h>

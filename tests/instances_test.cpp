@@ -12,7 +12,7 @@
 #include "reference/tracing.hpp"
 #include "reference/triangle.hpp"
 #include "scene/alpha.hpp"
-#include "scene/gltf.hpp"
+#include "scene/gltf/load.hpp"
 #include "support.hpp"
 
 namespace manylight {

@@ -8,7 +8,8 @@
 #include "commands/describe.hpp"
 #include "output/metrics.hpp"
 #include "reference/gbuffer.hpp"
-#include "scene/gltf.hpp"
+#include "scene/gltf/file.hpp"
+#include "scene/gltf/load.hpp"
 #include "support.hpp"
 
 namespace manylight {

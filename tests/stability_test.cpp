@@ -7,7 +7,7 @@
 #include "chart/reference.hpp"
 #include "output/metrics.hpp"
 #include "scene/builtin/builtin.hpp"
-#include "scene/gltf.hpp"
+#include "scene/gltf/load.hpp"
 #include "support.hpp"
 
 namespace manylight {

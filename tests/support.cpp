@@ -8,7 +8,7 @@
 #include <cmath>
 #include <filesystem>
 
-#include "scene/gltf.hpp"
+#include "scene/gltf/load.hpp"
 
 namespace manylight::test {
 namespace {

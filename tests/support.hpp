@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "pipeline/frame.hpp"
-#include "scene/gltf_writer.hpp"
+#include "scene/gltf/writer.hpp"
 #include "verify/verify.hpp"
 
 namespace manylight::test {

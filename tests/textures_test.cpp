@@ -11,7 +11,7 @@
 #include "reference/textures.hpp"
 #include "reference/tiles.hpp"
 #include "scene/alpha.hpp"
-#include "scene/gltf.hpp"
+#include "scene/gltf/load.hpp"
 #include "support.hpp"
 
 namespace manylight {

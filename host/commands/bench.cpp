@@ -16,7 +16,7 @@
 #include "output/write_file.hpp"
 #include "print.hpp"
 #include "scene/builtin/builtin.hpp"
-#include "scene/gltf_parse.hpp"
+#include "scene/gltf/parse.hpp"
 #include "stages/gbuffer.hpp"
 #include "verify/verify.hpp"
 

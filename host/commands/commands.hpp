@@ -11,7 +11,7 @@
 #include "chart/measure.hpp"
 #include "pipeline/frame.hpp"
 #include "scene/builtin/builtin.hpp"
-#include "scene/gltf.hpp"
+#include "scene/gltf/load.hpp"
 
 namespace manylight {
 

@@ -99,7 +99,7 @@ struct Scene {
                                     // cut to, 0 where it is none; empty if there are no area lights
     std::vector<View> views;
     std::vector<std::string> warnings;       // what the file holds and is not rendered
-    std::optional<unsigned> emitter_points;  // the file's own wish, see gltf.hpp
+    std::optional<unsigned> emitter_points;  // the file's own wish, see load_scene()
 
     /// As many as are stored.
     [[nodiscard]] std::size_t triangle_count() const { return triangle_materials.size(); }

@@ -2,7 +2,7 @@
 // Scenes part by part.
 #pragma once
 
-#include "scene/gltf_writer.hpp"
+#include "scene/gltf/writer.hpp"
 #include "scene/scene.hpp"
 
 namespace manylight {

@@ -12,7 +12,7 @@
 #include <random>
 
 #include "error.hpp"
-#include "scene/gltf.hpp"
+#include "scene/gltf/load.hpp"
 
 using nlohmann::json;
 

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "scene/gltf_writer.hpp"
+#include "scene/gltf/writer.hpp"
 
 namespace manylight {
 

@@ -5,7 +5,7 @@
 #include "error.hpp"
 #include "print.hpp"
 #include "scene/builtin/builtin.hpp"
-#include "scene/gltf.hpp"
+#include "scene/gltf/load.hpp"
 #include "scene/scene.hpp"
 
 namespace manylight {

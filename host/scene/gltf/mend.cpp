@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
 // What glTF forbids and yet has one sensible reading is changed to that reading; extensions that
 // say the same as glTF itself are put into its words.
+#include "scene/gltf/mend.hpp"
+
 #include <algorithm>
 #include <cmath>
 
 #include "error.hpp"
-#include "scene/gltf.hpp"
 
 namespace manylight {
 namespace {

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "scene/gltf_parse.hpp"
+#include "scene/gltf/parse.hpp"
+#include "scene/scene.hpp"
 
 namespace manylight {
 

@@ -2,7 +2,7 @@
 // What the URIs of a glTF file name. All that is read beside a scene is read here.
 #pragma once
 
-#include "scene/gltf.hpp"
+#include "scene/gltf/file.hpp"
 
 namespace manylight {
 

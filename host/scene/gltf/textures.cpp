@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "scene/gltf_textures.hpp"
+#include "scene/gltf/textures.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,7 +8,7 @@
 #include <span>
 
 #include "error.hpp"
-#include "scene/gltf_uri.hpp"
+#include "scene/gltf/uri.hpp"
 #include "scene/textures.hpp"
 
 namespace manylight {

@@ -1,15 +1,17 @@
 // SPDX-License-Identifier: MIT
+#include "scene/gltf/file.hpp"
+
 #include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <span>
 
 #include "error.hpp"
-#include "scene/gltf.hpp"
 
 namespace manylight {
 namespace {
 
+constexpr const char* meshopt_extensions[] = {"EXT_meshopt_compression", "KHR_meshopt_compression"};
 constexpr int deepest_nesting = 128;  // 20,000 nested brackets overflow the parser's stack
 
 std::uint32_t word(const std::vector<unsigned char>& bytes, std::size_t offset) {
@@ -144,6 +146,24 @@ GltfFile read_gltf(const std::string& path) {
                          words.substr(std::min(words.find("] ") + 2, words.size())));
     }
     return file;
+}
+
+const char* compression_of(const nlohmann::json& view) {
+    const auto extensions = view.find("extensions");
+    if (extensions == view.end()) return nullptr;
+    for (const char* name : meshopt_extensions)
+        if (extensions->contains(name)) return name;
+    return nullptr;
+}
+
+bool has_data(const GltfFile& file, std::size_t index) {
+    const nlohmann::json& buffer = file.json["buffers"][index];
+    for (const char* extension : meshopt_extensions) {
+        const nlohmann::json::json_pointer fallback(
+            fmt::format("/extensions/{}/fallback", extension));
+        if (buffer.contains(fallback) && buffer[fallback] == true) return false;
+    }
+    return buffer.contains("uri") || (index == 0 && file.binary);
 }
 
 }  // namespace manylight

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "scene/gltf_extensions.hpp"
+#include "scene/gltf/extensions.hpp"
 
 #include <set>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "scene/gltf_accessors.hpp"
+#include "scene/gltf/accessors.hpp"
 
 #include <meshoptimizer.h>
 

@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "scene/gltf_accessors.hpp"
+#include "scene/gltf/accessors.hpp"
 
 namespace manylight {
 

@@ -2,7 +2,7 @@
 #pragma once
 
 // First: tinygltf's implementation includes nlohmann's header as hidden.
-#include "scene/gltf.hpp"
+#include "scene/gltf/file.hpp"
 
 #include <tiny_gltf.h>
 

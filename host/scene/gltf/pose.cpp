@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "scene/gltf_pose.hpp"
+#include "scene/gltf/pose.hpp"
 
 #include <algorithm>
 #include <glm/gtc/matrix_transform.hpp>

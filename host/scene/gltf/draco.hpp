@@ -2,7 +2,7 @@
 // Meshes compressed by Draco (KHR_draco_mesh_compression).
 #pragma once
 
-#include "scene/gltf_accessors.hpp"
+#include "scene/gltf/accessors.hpp"
 
 namespace manylight {
 

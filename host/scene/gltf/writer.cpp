@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #define GLM_ENABLE_EXPERIMENTAL
-#include "scene/gltf_writer.hpp"
+#include "scene/gltf/writer.hpp"
 
 #include <algorithm>
 #include <cmath>

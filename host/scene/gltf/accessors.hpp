@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "scene/gltf.hpp"
-#include "scene/gltf_parse.hpp"
+#include "scene/gltf/file.hpp"
+#include "scene/gltf/parse.hpp"
 
 namespace manylight {
 

@@ -4,13 +4,13 @@
 #define TINYGLTF_NO_STB_IMAGE
 #define TINYGLTF_NO_STB_IMAGE_WRITE
 #define TINYGLTF_NO_EXTERNAL_IMAGE
-#include "scene/gltf_parse.hpp"
+#include "scene/gltf/parse.hpp"
 
 #include <algorithm>
 #include <filesystem>
 
 #include "error.hpp"
-#include "scene/gltf_uri.hpp"
+#include "scene/gltf/uri.hpp"
 
 namespace manylight {
 namespace {

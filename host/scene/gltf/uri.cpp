@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "scene/gltf_uri.hpp"
+#include "scene/gltf/uri.hpp"
 
 #include <algorithm>
 #include <cctype>
