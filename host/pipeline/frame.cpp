@@ -2,32 +2,17 @@
 #include "pipeline/frame.hpp"
 
 #include <algorithm>
-#include <limits>
 #include <optional>
 
-#include "clock.hpp"
-#include "device/kernel_sources.hpp"
-#include "output/hash.hpp"
-#include "pipeline/aov.hpp"
-#include "pipeline/image_options.hpp"
-#include "stages/accumulate.hpp"
 #include "stages/reflections.hpp"
 
 namespace manylight {
 namespace {
 
-// Pixel samples of the whole image before its error may stop it: an image of few pixels says little
-// of its error, and the stop would favour images that have missed something.
-constexpr std::size_t fewest_samples = std::size_t{1} << 14;
-
 // Whether a ray may find another surface than the same ray of another sample.
 bool passes_by_chance(const Scene& scene) {
     return std::ranges::any_of(scene.alpha_triangles,
                                [](const AlphaTriangle& t) { return t.second.z < 0; });
-}
-
-uint whole_rounds(uint samples) {
-    return (samples + ERROR_GROUPS - 1) / ERROR_GROUPS * ERROR_GROUPS;
 }
 
 // Adds the time until its end to a total, compiling apart.
@@ -43,6 +28,12 @@ class Stopwatch {
     double compiled_;
     Clock::time_point start_ = Clock::now();
 };
+
+Buffer<float4> allocate_zeros(Device& device, std::size_t count) {
+    Buffer<float4> buffer = device.allocate<float4>(count);
+    buffer.clear();
+    return buffer;
+}
 
 }  // namespace
 
@@ -65,6 +56,16 @@ struct Frame::Stages {
           image(device, pixels, grouped) {}
 };
 
+// A visit of a batch.
+struct Frame::Work {
+    Visit visit;
+    const FrameState* state;  // that the batch goes on with
+    bool fresh;               // nothing is kept of it
+    Pace pace;
+    double begin_rays;         // that its beginning takes, about
+    double rays = begin_rays;  // that are done
+};
+
 Frame::Frame(const Device& device, const Scene& scene, const WideBvh& bvh, const Camera& camera,
              const RenderOptions& options)
     : device_(device),
@@ -73,33 +74,10 @@ Frame::Frame(const Device& device, const Scene& scene, const WideBvh& bvh, const
       camera_(camera),
       options_(options),
       sampler_(find_sampler(options.sampler)),
-      plan_(make_plan(device.info(), scene, bvh, options)) {}
-
-// Light samples of pixel sample i.
-uint Frame::samples_of(uint i) const {
-    const auto lights = static_cast<uint>(scene_.lights.size());
-    return sampler_.all_lights || lights == 0 ? lights : options_.samples_of(i);
-}
-
-// Pixel samples count by their light samples, and alike where there are no lights.
-float Frame::weight_of(uint i) const {
-    return static_cast<float>(std::max(samples_of(i), 1u)) /
-           static_cast<float>(std::max(samples_of(0), 1u));
-}
-
-// Positions in the pixel, and reflections, are stratified over samples. What the error is estimated
-// from has to be independent: the even and the odd samples then have such a sequence each.
-PixelSample Frame::position_of(PixelSample sample) const {
-    if (!options_.estimates_error()) return sample;
-    const uint other = sample.index % 2 == 1 ? 0x9e3779b9u : 0u;
-    return {sample.index / 2, sample.seed + other, sample.jitter};
-}
-
-Buffer<float4> Frame::allocate_zeros(std::size_t count) {
-    Buffer<float4> buffer = device_.allocate<float4>(count);
-    buffer.clear();
-    return buffer;
-}
+      plan_(make_plan(device.info(), scene, bvh, options)),
+      schedule_(options_, plan_, scene.lights.size()),
+      checkpoints_(options_, plan_),
+      layers_(scene, options_, plan_) {}
 
 void Frame::prepare() {
     const std::size_t pixels = std::size_t{options_.width} * options_.height;
@@ -124,7 +102,7 @@ void Frame::prepare() {
     s.surfaces = device_.allocate<Surface>(items);
     if (plan_.centres) s.centres = two_surfaces ? device_.allocate<Surface>(items) : s.surfaces;
     s.centres_first = two_surfaces ? items : 0;
-    s.estimates = {allocate_zeros(items), allocate_zeros(items)};
+    s.estimates = {allocate_zeros(device_, items), allocate_zeros(device_, items)};
     device_.compile();
     if (scene_.lights.empty()) return;
     Stopwatch watch(result_.prepare_seconds, device_);
@@ -132,295 +110,160 @@ void Frame::prepare() {
     device_.finish();
 }
 
+// Rounds over the image, until it is as it should be, or there is no more time.
 FrameResult Frame::render(Progress& progress, const Saving& saving, const FrameState* state) {
-    saving_ = saving;
-    saved_ = Clock::now();
-    for (const Aov& aov : all_aovs())
-        if (std::ranges::count(options_.aovs, aov.name))
-            result_.aovs.emplace_back(aov.name,
-                                      Image(options_.width, options_.height, aov.channels));
-    done_.assign(plan_.batches, 0);
-    layers_kept_.assign(plan_.batches, false);
-    if (state != nullptr) resume(*state);
-    if (options_.target_error > 0)
-        render_to_error(progress);
-    else
-        visit_all(options_.spp, 0, 1, progress);
-    if (std::ranges::any_of(done_, [&](uint samples) { return samples != done_[0]; }))
-        result_.is_cut_short = true;
-    if (options_.target_error > 0) return std::move(result_);
-    if (options_.estimates_error()) {
-        keep_estimate();
-    } else {
-        Stopwatch watch(result_.render_seconds, device_);
+    standing_.done.assign(plan_.batches, 0);
+    checkpoints_.start(saving, state, standing_, stages_->image);
+    Round round = schedule_.first_round(checkpoints_.resumed_end());
+    while (true) {
+        render_round(round, progress);
         keep_image();
+        if (result_.is_cut_short && is_interrupted()) break;
+        const std::optional<Round> next = schedule_.next_round(round, result_.error);
+        if (!next) {
+            if (checkpoints_.are_saved() && round.end < options_.spp)
+                save(plan_.batches - 1, round.end);
+            break;
+        }
+        round = *next;
     }
+    if (std::ranges::count(standing_.done, standing_.done[0]) != plan_.batches)
+        result_.is_cut_short = true;
+    result_.is_resumed = checkpoints_.is_resumed();
+    result_.primary_rays = standing_.primary_rays;
+    result_.clusters = layers_.clusters();
+    result_.aovs = layers_.take();
     return std::move(result_);
 }
 
-// Renders as many samples as the error so far says are needed, and looks again.
-void Frame::render_to_error(Progress& progress) {
-    const std::size_t pixels = std::size_t{options_.width} * options_.height;
-    const uint fewest = whole_rounds(static_cast<uint>((fewest_samples + pixels - 1) / pixels));
-    uint end = std::min(std::max(fewest, resumed_end_), options_.spp);
-    double shown = 0;
-    double share = 0.2;  // of all work, which is not known yet
-    double weight = 0;   // of all samples until `end`
-    uint counted = 0;
-    while (true) {
-        visit_all(end, shown, share, progress);
-        keep_estimate();
-        const std::optional<ErrorEstimate>& error = result_.error;
-        const bool late = options_.deadline && Clock::now() >= *options_.deadline;
-        if (result_.is_cut_short && is_interrupted()) return;
-        const bool reached = error && error->most() <= options_.target_error;
-        if (reached || end >= options_.spp || late || scene_.lights.empty()) {
-            if (saving_.save && end < options_.spp) save(plan_.batches - 1, end);
-            return;
-        }
-        for (; counted < end; ++counted) weight += weight_of(counted);
-        // Errors fall as the inverse of the weight.
-        const double most = 4 * weight;
-        const double needed = error ? weight * 1.02 * error->most() / options_.target_error : most;
-        const double next = std::min(needed, most);
-        double weight_then = weight;
-        do weight_then += weight_of(end++);
-        while ((weight_then < next || end % ERROR_GROUPS != 0) && end < options_.spp);
-        shown = weight / needed;
-        share = (weight_then - weight) / needed;
-    }
-}
-
-// Brings all batches to `end` samples per pixel, or as far as time allows.
-void Frame::visit_all(uint end, double shown, double share, Progress& progress) {
-    const Tiles all = all_tiles(options_.width, options_.height, options_.tile_size());
+// A round brings one batch after another to as many samples per pixel, or as far as time allows.
+void Frame::render_round(const Round& round, Progress& progress) {
+    double shown = round.shown;
     for (unsigned i = 0; i < plan_.batches; ++i) {
         if (is_interrupted()) {
             result_.is_cut_short = true;
             return;
         }
-        Visit visit;
-        visit.batch = all;
-        visit.number = i;
-        visit.end = end;
-        visit.batch.first = i * plan_.tiles_per_batch;
-        visit.batch.count = std::min(plan_.tiles_per_batch, all.count - visit.batch.first);
-        visit.begun = Clock::now();
-        if (options_.deadline)
-            visit.deadline = visit.begun + (*options_.deadline - visit.begun) / (plan_.batches - i);
-        visit.share = share * visit.batch.count / all.count;
-        visit.shown = shown;
+        const Visit visit = schedule_.visit(round, i, standing_.done[i], shown);
         shown += visit.share;
+        const FrameState* state = checkpoints_.state_of(i);
         // What is kept of a batch is lost where another one was in between.
-        if (state_ != nullptr && state_->get<uint>("batch") == i) visit.state = state_;
-        visit.fresh = done_[i] == 0 || plan_.batches > 1 || visit.state != nullptr;
-        if (plan_.centres && visit.fresh) {
+        const bool fresh = standing_.done[i] == 0 || plan_.batches > 1 || state != nullptr;
+        Work work{visit, state, fresh, Pace(visit),
+                  stages_->sampler->expected_begin_rays(visit.batch)};
+        if (plan_.centres && fresh) {
             Stopwatch watch(result_.prepare_seconds, device_);
-            stages_->gbuffer.trace(visit.batch, {}, stages_->centres, stages_->centres_first);
-            if (options_.jitters() && visit.state == nullptr)  // which has counted them
-                result_.primary_rays += pixel_count(visit.batch);
-            if (plan_.clusters) begin(visit, stages_->centres, progress);
-            if (!layers_kept_[i]) keep_aovs(visit.batch);
-            layers_kept_[i] = true;
-            device_.finish();
+            trace_centres(work, progress);
         }
         Stopwatch watch(result_.render_seconds, device_);
-        sample(visit, progress);
-        if (visit.state != nullptr && plan_.batches > 1) state_ = nullptr;  // this batch was done
+        take_samples(work, progress);
+        if (state != nullptr && plan_.batches > 1) checkpoints_.drop_state();  // this batch is done
     }
 }
 
-// `work`: rays of the visit done so far, clusters first.
-void Frame::report(Progress& progress, const Visit& visit, double work) const {
-    double samples = 0;
-    for (uint i = done_[visit.number]; i < visit.end && !visit.deadline; ++i)
-        samples += std::max(samples_of(i), 1u);
-    double done = work / (stages_->sampler->expected_begin_rays(visit.batch) +
-                          samples * static_cast<double>(item_count(visit.batch)));
-    if (visit.deadline)
-        done = seconds_since(visit.begun) /
-               std::chrono::duration<double>(*visit.deadline - visit.begun).count();
-    progress.set(visit.shown + visit.share * std::clamp(done, 0.0, 1.0));
+// Stage gbuffer finds the surfaces at the pixels' centres; they are clustered, and their layers
+// kept.
+void Frame::trace_centres(const Work& work, Progress& progress) {
+    Stages& s = *stages_;
+    const Tiles& batch = work.visit.batch;
+    s.gbuffer.trace(batch, {}, s.centres, s.centres_first);
+    if (options_.jitters() && work.state == nullptr)  // which has counted them
+        standing_.primary_rays += pixel_count(batch);
+    if (plan_.clusters) begin_batch(work, s.centres, progress);
+    layers_.keep(work.visit.number, batch, s.scene.materials, s.centres, *s.sampler);
+    device_.finish();
 }
 
-// What the sampler makes of a batch before it draws.
-void Frame::begin(const Visit& visit, const Buffer<Surface>& surfaces, Progress& progress) {
+// Before it draws, the sampler makes of a batch what it needs: clusters, contributions and PDFs, or
+// cuts.
+void Frame::begin_batch(const Work& work, const Buffer<Surface>& surfaces, Progress& progress) {
     LightSampler& sampler = *stages_->sampler;
     double done = 0;
     const RayCount count = [&](std::size_t rays) {
         device_.finish();
         done += static_cast<double>(rays);
-        report(progress, visit, std::min(done, stages_->sampler->expected_begin_rays(visit.batch)));
+        progress.set(
+            schedule_.progress(work.visit, work.begin_rays, std::min(done, work.begin_rays)));
     };
-    if (visit.state == nullptr) {
-        sampler.begin(visit.batch, surfaces, options_.seed, count);
-        begin_rays_ += sampler.begin_rays();
+    if (work.state == nullptr) {
+        sampler.begin(work.visit.batch, surfaces, options_.seed, count);
+        standing_.begin_rays += sampler.begin_rays();
     } else {  // which has counted them
-        sampler.resume(visit.batch, surfaces, options_.seed, *visit.state, count);
-    }
-    if (layers_kept_[visit.number]) return;
-    clusters_before_ = result_.clusters;
-    result_.clusters += sampler.cluster_count();
-}
-
-void Frame::keep_aovs(const Tiles& batch) {
-    if (result_.aovs.empty()) return;
-    BatchFacts facts;
-    facts.origin = scene_.origin;
-    facts.materials = stages_->scene.materials.download();
-    facts.surfaces = stages_->centres.download(0, item_count(batch));
-    if (plan_.clusters) {
-        facts.clusters = stages_->sampler->cluster_facts();
-        std::size_t number = clusters_before_;
-        for (const uint split : facts.clusters.split) {
-            facts.numbers.push_back(number);
-            number += split == 0;
-        }
-    }
-    for (auto& [name, layer] : result_.aovs) {
-        const Aov& aov = *std::ranges::find(all_aovs(), name, &Aov::name);
-        if (aov.fill) fill_layer(aov, facts, batch, layer);
+        sampler.resume(work.visit.batch, surfaces, options_.seed, *work.state, count);
     }
 }
 
-void Frame::sample(const Visit& visit, Progress& progress) {
+// A pixel sample of every pixel of the batch goes through stages gbuffer, samples, reflections and
+// accumulate, one after another as long as there is time.
+void Frame::take_samples(Work& work, Progress& progress) {
     Stages& s = *stages_;
-    const Tiles& batch = visit.batch;
-    double work = s.sampler->expected_begin_rays(batch);
-    double seconds_per_sample = 0;  // of a light sample of all pixels
-    bool by_passes = false;         // the sampler finishes some pixels after others
-    const uint first = done_[visit.number];
-    for (uint i = first; i < visit.end; ++i) {
-        if (is_interrupted()) {
+    const Visit& visit = work.visit;
+    for (uint i = visit.first; i < visit.end; ++i) {
+        const uint light_samples = schedule_.light_samples(i);
+        if (is_interrupted() || !work.pace.has_time(i, light_samples)) {
             result_.is_cut_short = true;
             break;
         }
-        const uint count = samples_of(i);
-        const auto begun = Clock::now();
-        const auto seconds_left = [&] {
-            return std::chrono::duration<double>(*visit.deadline - Clock::now()).count();
-        };
-        // One sample is taken whatever the time.
-        const bool may_stop = visit.deadline.has_value() && i > 0;
-        const double expected = by_passes ? 0 : seconds_per_sample * count;
-        if (may_stop && seconds_left() < expected / 2) {
-            result_.is_cut_short = true;
-            break;
-        }
-        const PixelSample sample{i, options_.seed, options_.jitters()};
-        const bool alike = !options_.jitters() && !passes_by_chance(scene_);
-        const bool at_hand = alike && (i > first || plan_.centres);
-        if (!at_hand) s.gbuffer.trace(batch, position_of(sample), s.surfaces);
-        if (!at_hand || i == 0) result_.primary_rays += pixel_count(batch);
-        const auto add = [&](const std::optional<Pass>& pass) {
-            s.accumulate.add(batch, pass, s.surfaces, s.estimates.sums,
-                             {weight_of(i), i % ERROR_GROUPS}, s.image);
-        };
-        if (i == first && visit.fresh && !plan_.clusters && count > 0)
-            begin(visit, s.surfaces, progress);
-        by_passes = false;
-        const Sink sink = [&](const std::optional<Pass>& finished, std::size_t samples) {
-            if (finished && !s.reflections) add(finished);
-            by_passes = finished.has_value();
-            device_.finish();
-            work += static_cast<double>(samples);
-            report(progress, visit, work);
-            if (is_interrupted() && !saving_.save) return false;  // a state is one between samples
-            return !by_passes || !may_stop || seconds_left() > 0;
-        };
-        done_[visit.number] = i + 1;
-        const bool complete =
-            count == 0 || s.sampler->draw(batch, sample, count, s.surfaces, s.estimates, sink);
-        if (!complete) {
+        work.pace.begin();
+        trace_surfaces(work, i);
+        if (i == visit.first && work.fresh && !plan_.clusters && light_samples > 0)
+            begin_batch(work, s.surfaces, progress);
+        standing_.done[visit.number] = i + 1;
+        if (!draw_lights(work, i, progress)) {
             result_.is_cut_short = true;
             continue;
         }
         if (s.reflections)
-            s.reflections->add(batch, position_of(sample), s.surfaces, s.estimates.sums);
-        if (s.reflections || !by_passes) add({});
+            s.reflections->add(visit.batch, schedule_.position(i), s.surfaces, s.estimates.sums);
+        if (s.reflections || !work.pace.by_passes()) accumulate(work, i, {});
         device_.finish();
-        seconds_per_sample = seconds_since(begun) / std::max(count, 1u);
+        work.pace.end(light_samples);
+        checkpoints_.drop_state();
         const bool is_last = i + 1 == options_.spp && visit.number + 1 == plan_.batches;
-        state_ = nullptr;
-        if (saving_.save &&
-            (is_last || is_interrupted() || seconds_since(saved_) > saving_.seconds))
+        if (checkpoints_.are_saved() && (is_last || is_interrupted() || checkpoints_.is_due()))
             save(visit.number, visit.end);
     }
 }
 
-std::string Frame::name() const {
-    ContentHash hash;
-    const RenderOptions& o = options_;
-    hash.add(scene_).add(std::as_bytes(std::span(&camera_, 1)));
-    for (const auto& [option, value] : image_options(o)) hash.add(option).add(value.dump());
-    hash.add(o.jitters()).add(plan_.tiles_per_batch);
-    hash.add(device_.info().name).add(device_.info().platform).add(device_.form().lanes);
-    for (const auto& [file, text] : kernel_sources) hash.add(text);
-    return std::string(o.sampler) + " " + hash.add(MANYLIGHT_VERSION).name();
-}
-
-bool Frame::is_interrupted() const { return options_.interrupted && options_.interrupted(); }
-
-// Between two pixel samples of a batch that is on the way to `end` of them.
-void Frame::save(unsigned batch, uint end) {
-    FrameState state;
+// Stage gbuffer finds the surfaces of pixel sample i, unless they are at hand.
+void Frame::trace_surfaces(const Work& work, uint i) {
     Stages& s = *stages_;
-    state.put("batch", uint{batch});
-    state.put("end", end);
-    state.put("spp", options_.planned_spp());
-    state.put("done", std::span<const uint>(done_));
-    state.put("begin_rays", std::uint64_t{begin_rays_});
-    state.put("primary_rays", std::uint64_t{result_.primary_rays});
-    state.put("sums", s.image.sums);
-    state.put("residuals", s.image.residuals);
-    state.put("weights", s.image.weights);
-    if (options_.estimates_error()) state.put("groups", s.image.groups);
-    if (!scene_.lights.empty()) s.sampler->save(state);
-    saving_.save(state);
-    saved_ = Clock::now();
+    const bool alike = !options_.jitters() && !passes_by_chance(scene_);
+    const bool at_hand = alike && (i > work.visit.first || plan_.centres);
+    if (!at_hand) s.gbuffer.trace(work.visit.batch, schedule_.position(i), s.surfaces);
+    if (!at_hand || i == 0) standing_.primary_rays += pixel_count(work.visit.batch);
 }
 
-void Frame::resume(const FrameState& state) {
+// Stages samples and shadows draw the light samples of pixel sample i. Returns whether all were
+// drawn.
+bool Frame::draw_lights(Work& work, uint i, Progress& progress) {
     Stages& s = *stages_;
-    const auto spp = state.get<uint>("spp");
-    if (plan_.batches > 1) {  // of those that are done, nothing is kept to go on
-        if (options_.spp > spp)
-            throw InputError(
-                "--spp {}: the checkpoint's image is made in {} batches, of {} pixel samples each: "
-                "it can have fewer, not more",
-                options_.spp, plan_.batches, spp);
-        if (options_.spp < spp) saving_.save = nullptr;
-    }
-    state_ = &state;
-    resumed_end_ = state.get<uint>("end");
-    done_ = state.get<uint>("done", plan_.batches);
-    begin_rays_ = state.get<std::uint64_t>("begin_rays");
-    result_.primary_rays = state.get<std::uint64_t>("primary_rays");
-    result_.is_resumed = true;
-    state.restore("sums", s.image.sums);
-    state.restore("residuals", s.image.residuals);
-    state.restore("weights", s.image.weights);
-    if (options_.estimates_error()) state.restore("groups", s.image.groups);
+    const uint light_samples = schedule_.light_samples(i);
+    work.pace.set_by_passes(false);
+    const Sink sink = [&](const std::optional<Pass>& finished, std::size_t samples) {
+        if (finished && !s.reflections) accumulate(work, i, finished);
+        work.pace.set_by_passes(finished.has_value());
+        device_.finish();
+        work.rays += static_cast<double>(samples);
+        progress.set(schedule_.progress(work.visit, work.begin_rays, work.rays));
+        // A state is one between samples.
+        if (is_interrupted() && !checkpoints_.are_saved()) return false;
+        return work.pace.goes_on(i);
+    };
+    return light_samples == 0 || s.sampler->draw(work.visit.batch, schedule_.sample(i),
+                                                 light_samples, s.surfaces, s.estimates, sink);
 }
 
-// The image so far, and what its groups of samples say of its error.
-void Frame::keep_estimate() {
-    Stopwatch watch(result_.render_seconds, device_);
-    keep_image();
-    result_.error =
-        estimate_error(options_.width, options_.height, stages_->image.groups.download());
-    for (auto& [name, layer] : result_.aovs) {
-        if (name != "error") continue;
-        if (result_.error)
-            layer = result_.error->pixels;
-        else
-            std::ranges::fill(layer.values, std::numeric_limits<float>::quiet_NaN());
-    }
+// Stage accumulate adds what pixel sample i has come to to the image: of all pixels, or of a pass.
+void Frame::accumulate(const Work& work, uint i, const std::optional<Pass>& pass) {
+    Stages& s = *stages_;
+    s.accumulate.add(work.visit.batch, pass, s.surfaces, s.estimates.sums,
+                     {schedule_.weight(i), i % ERROR_GROUPS}, s.image);
 }
 
-LightSampler& Frame::sampler() const { return *stages_->sampler; }
-
+// The image so far is the mean of each pixel's samples; groups of these say what its error is.
 void Frame::keep_image() {
+    Stopwatch watch(result_.render_seconds, device_);
     result_.image = Image(options_.width, options_.height, {"R", "G", "B"});
     const std::vector<float4> sums = stages_->image.sums.download();
     const std::vector<float> weights = stages_->image.weights.download();
@@ -428,7 +271,7 @@ void Frame::keep_image() {
     double samples = 0;
     result_.empty_pixels = static_cast<std::size_t>(std::ranges::count(weights, 0.f));
     const auto first_weight = static_cast<float>(RenderOptions::first_samples);
-    const float later_weight = weight_of(RenderOptions::first_samples);
+    const float later_weight = schedule_.weight(RenderOptions::first_samples);
     for (std::size_t i = 0; i < sums.size(); ++i) {
         for (int c = 0; c < 3; ++c)
             result_.image.values[3 * i + c] = sums[i][c] / std::max(weights[i], 1e-30f);
@@ -436,10 +279,29 @@ void Frame::keep_image() {
         samples += std::min(weights[i], first_weight) +
                    std::max(weights[i] - first_weight, 0.f) / later_weight;
     }
-    result_.shadow_rays = begin_rays_ + static_cast<std::size_t>(rays);
+    result_.shadow_rays = standing_.begin_rays + static_cast<std::size_t>(rays);
     result_.spp = samples / static_cast<double>(sums.size());
-    result_.light_samples = samples_of(0);
-    result_.later_light_samples = samples_of(std::max(std::ranges::max(done_), 1u) - 1);
+    result_.light_samples = schedule_.light_samples(0);
+    result_.later_light_samples =
+        schedule_.light_samples(std::max(std::ranges::max(standing_.done), 1u) - 1);
+    if (!options_.estimates_error()) return;
+    result_.error =
+        estimate_error(options_.width, options_.height, stages_->image.groups.download());
+    layers_.keep_error(result_.error);
+}
+
+std::string Frame::name() const {
+    return name_of_render(device_, scene_, camera_, options_, plan_);
+}
+
+LightSampler& Frame::sampler() const { return *stages_->sampler; }
+
+bool Frame::is_interrupted() const { return options_.interrupted && options_.interrupted(); }
+
+// Between two pixel samples of a batch that is on the way to `end` of them.
+void Frame::save(unsigned batch, uint end) {
+    checkpoints_.save(batch, end, standing_, stages_->image,
+                      scene_.lights.empty() ? nullptr : stages_->sampler.get());
 }
 
 }  // namespace manylight

@@ -9,10 +9,12 @@
 #include "output/error_estimate.hpp"
 #include "output/image.hpp"
 #include "output/progress.hpp"
+#include "pipeline/checkpoint.hpp"
+#include "pipeline/layers.hpp"
 #include "pipeline/plan.hpp"
+#include "pipeline/schedule.hpp"
 #include "samplers/table.hpp"
 #include "scene/scene.hpp"
-#include "stages/gbuffer.hpp"
 
 namespace manylight {
 
@@ -41,6 +43,8 @@ class Frame {
     /// Plans the frame (see make_plan).
     Frame(const Device& device, const Scene& scene, const WideBvh& bvh, const Camera& camera,
           const RenderOptions& options);
+    Frame(const Frame&) = delete;
+    Frame& operator=(const Frame&) = delete;
 
     [[nodiscard]] const Plan& plan() const { return plan_; }
 
@@ -63,34 +67,18 @@ class Frame {
 
   private:
     struct Stages;
-    // Samples of a batch's pixels.
-    struct Visit {
-        Tiles batch;
-        unsigned number;                    // of the batch
-        uint end;                           // pixel samples until
-        bool fresh = true;                  // nothing is kept of it
-        const FrameState* state = nullptr;  // to go on with
-        Clock::time_point begun;
-        std::optional<Clock::time_point> deadline;
-        double shown = 0;  // of the progress bar, before
-        double share = 1;  // of the progress bar
-    };
+    struct Work;
 
-    [[nodiscard]] Buffer<float4> allocate_zeros(std::size_t count);
-    [[nodiscard]] uint samples_of(uint i) const;
-    [[nodiscard]] PixelSample position_of(PixelSample sample) const;
-    [[nodiscard]] float weight_of(uint i) const;
-    void render_to_error(Progress& progress);
-    void visit_all(uint end, double shown, double share, Progress& progress);
-    void begin(const Visit& visit, const Buffer<Surface>& surfaces, Progress& progress);
-    void keep_aovs(const Tiles& batch);
-    void sample(const Visit& visit, Progress& progress);
+    void render_round(const Round& round, Progress& progress);
+    void trace_centres(const Work& work, Progress& progress);
+    void begin_batch(const Work& work, const Buffer<Surface>& surfaces, Progress& progress);
+    void take_samples(Work& work, Progress& progress);
+    void trace_surfaces(const Work& work, uint i);
+    [[nodiscard]] bool draw_lights(Work& work, uint i, Progress& progress);
+    void accumulate(const Work& work, uint i, const std::optional<Pass>& pass);
+    void keep_image();
     [[nodiscard]] bool is_interrupted() const;
     void save(unsigned batch, uint end);
-    void resume(const FrameState& state);
-    void keep_estimate();
-    void keep_image();
-    void report(Progress& progress, const Visit& visit, double work) const;
 
     Device device_;
     const Scene& scene_;
@@ -99,15 +87,11 @@ class Frame {
     RenderOptions options_;
     const Sampler& sampler_;
     Plan plan_;
-    LightTree tree_;                 // where the sampler uses it
-    std::vector<uint> done_;         // [batch] pixel samples begun
-    std::vector<bool> layers_kept_;  // [batch]
-    Saving saving_;
-    Clock::time_point saved_;
-    const FrameState* state_ = nullptr;  // until the render has gone on with it
-    uint resumed_end_ = 0;               // pixel samples that it was on the way to
-    std::size_t clusters_before_ = 0;    // the batch in work
-    std::size_t begin_rays_ = 0;
+    Schedule schedule_;
+    Checkpoints checkpoints_;
+    Layers layers_;
+    LightTree tree_;  // where the sampler uses it
+    Standing standing_;
     std::shared_ptr<Stages> stages_;
     FrameResult result_;
 };
