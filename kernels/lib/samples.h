@@ -4,10 +4,21 @@
 //
 // A sampler's file includes lib/draw.h, defines SAMPLER_PARAMETERS and SAMPLER_ARGUMENTS (the
 // buffers it needs, each after a comma) and choose_light(), and then includes this file.
+//
+// One that makes something of a pixel once for all light samples of a launch defines PIXEL_STATE,
+// its type, too, and begin_pixel(), which fills it: its arguments are choose_light()'s for the
+// first of them, but for the random bits, and a pointer to the state, which choose_light() then
+// gets, too.
 #include "lib/direct.h"
 #include "lib/random.h"
 #include "lib/rays.h"
 #include "lib/tiles.h"
+
+#ifdef PIXEL_STATE
+#define STATE_ARGUMENT , &state
+#else
+#define STATE_ARGUMENT
+#endif
 
 // Light samples first_sample to end_sample, at most 16, of sample_count: packet `item` of the rays,
 // and values[48 * item + 16 * channel + lane], what each contributes where nothing is in its way,
@@ -24,6 +35,11 @@ KERNEL void samples_draw(Tiles tiles, VIEW_PARAMETERS, __global const Surface* s
     if (item_in_image(tiles, item) && !surface_missed(surfaces + item)) {
         const Receiver receiver = make_receiver(surfaces, item, materials, VIEW);
         const uint2 pixel = item_pixel(tiles, item);
+#ifdef PIXEL_STATE
+        PIXEL_STATE state;
+        const Draw first = {item, first_sample, sample_count, (uint4)(0u), light_count};
+        begin_pixel(&receiver, lights, first SAMPLER_ARGUMENTS STATE_ARGUMENT);
+#endif
         __global float* value_lanes = values + 48 * (ulong)item;
         uint last = ~0u;
         bool lit = false;
@@ -32,7 +48,8 @@ KERNEL void samples_draw(Tiles tiles, VIEW_PARAMETERS, __global const Surface* s
             const uint4 bits =
                 random_bits(pixel.y * tiles.width + pixel.x, pixel_sample, sample, seed);
             const Draw draw = {item, sample, sample_count, bits, light_count};
-            const Choice choice = choose_light(&receiver, lights, draw SAMPLER_ARGUMENTS);
+            const Choice choice =
+                choose_light(&receiver, lights, draw SAMPLER_ARGUMENTS STATE_ARGUMENT);
             if (choice.weight == 0.0f) continue;
             if (choice.light == last && is_single_point(lights + choice.light)) {
                 if (!lit) continue;
