@@ -37,39 +37,53 @@ static Angle less(Angle a, Angle b) {
     return difference;
 }
 
+// How a surface point sees a node's lights.
+typedef struct NodeView {
+    // The most favourable cosines, of the normal and of the emission, that bounds and cone allow,
+    // multiplied; 0 where none of the lights shines on the point. Of directional lights the
+    // normal's alone.
+    float cosines;
+    float distance2;  // squared, to the centre of the bounds; of finite lights
+    float radius2;    // squared, of the sphere around the bounds; of finite lights
+} NodeView;
+
+static NodeView view_node(__global const LightNode* node, const Receiver* r) {
+    NodeView view = {1.0f, 0.0f, 0.0f};
+    if (NODE_IS_INFINITE(*node)) {
+        const float cosine = dot(r->normal, node->centre.xyz) + node->intensity.w;
+        view.cosines = clamp(cosine, 0.0f, 1.0f);
+        return view;
+    }
+    const float3 centre = 0.5f * (node->lower.xyz + node->upper.xyz);
+    const float3 half_diagonal = 0.5f * (node->upper.xyz - node->lower.xyz);
+    const float3 to_centre = centre - r->position;
+    view.radius2 = dot(half_diagonal, half_diagonal);
+    view.distance2 = dot(to_centre, to_centre);
+    // Within the sphere around the bounds every direction is possible.
+    if (view.distance2 <= view.radius2) return view;
+    const float3 towards = to_centre / sqrt(view.distance2);
+    const float sine2 = view.radius2 / view.distance2;
+    const Angle bound = {sqrt(1.0f - sine2), sqrt(sine2)};
+    if (node->upper.w <= 1.0f) {
+        const Angle off_axis = less(
+            less(angle_between(-node->cone.xyz, towards), angle_of_versine(node->lower.w)), bound);
+        view.cosines = off_axis.cosine;
+        if (versine_of(off_axis.cosine, off_axis.sine * off_axis.sine) >= node->upper.w)
+            view.cosines = 0.0f;
+    }
+    view.cosines *= max(less(angle_of(dot(r->normal, towards)), bound).cosine, 0.0f);
+    return view;
+}
+
 // An upper bound, but for the material, on what a node's lights contribute together: power x
 // cosines / squared distance, each as favourable as bounds and cone allow (Conty Estevez and Kulla,
 // "Importance Sampling of Many Lights with Adaptive Tree Splitting", 2018, as pbrt-v4 evaluates it
 // in LightBounds::Importance). Distances count as the radius of the bounds at least.
 static float node_importance(__global const LightNode* node, const Receiver* r) {
-    if (NODE_IS_INFINITE(*node)) {
-        const float3 c = node->centre.xyz;
-        const float cosine = dot(r->normal, c) + node->intensity.w;
-        return cosine <= 0.0f ? 0.0f : luminance(node->intensity.xyz) * min(cosine, 1.0f);
-    }
-    const float3 centre = 0.5f * (node->lower.xyz + node->upper.xyz);
-    const float3 half_diagonal = 0.5f * (node->upper.xyz - node->lower.xyz);
-    const float radius2 = dot(half_diagonal, half_diagonal);
-    const float3 to_centre = centre - r->position;
-    const float distance2 = dot(to_centre, to_centre);
-    const float floor2 = max(distance2, radius2);
-    if (floor2 == 0.0f) return 0.0f;
-    const float power = node->cone.w;
-    // Within the sphere around the bounds every direction is possible.
-    if (distance2 <= radius2) return power / floor2;
-    const float3 towards = to_centre / sqrt(distance2);
-    const Angle bound = {sqrt(1.0f - radius2 / distance2), sqrt(radius2 / distance2)};
-    float emission = 1.0f;
-    if (node->upper.w <= 1.0f) {
-        const Angle off_axis = less(
-            less(angle_between(-node->cone.xyz, towards), angle_of_versine(node->lower.w)), bound);
-        emission = off_axis.cosine;
-        if (versine_of(off_axis.cosine, off_axis.sine * off_axis.sine) >= node->upper.w)
-            return 0.0f;
-    }
-    const float incidence = less(angle_of(dot(r->normal, towards)), bound).cosine;
-    if (incidence <= 0.0f) return 0.0f;
-    return power * emission * incidence / floor2;
+    const NodeView view = view_node(node, r);
+    if (NODE_IS_INFINITE(*node)) return luminance(node->intensity.xyz) * view.cosines;
+    const float floor2 = max(view.distance2, view.radius2);
+    return floor2 > 0.0f ? node->cone.w * view.cosines / floor2 : 0.0f;
 }
 
 #endif
