@@ -118,7 +118,7 @@ struct Sampler {
     bool all_lights = false;  // light sample i is light i
     bool tree = false;        // needs the light tree
     bool clusters = false;    // clusters pixels, from surfaces at their centres
-    bool learns = false;      // from one pixel sample for the next, as long as a batch is in work
+    bool learns = false;      // of a batch as a whole, which is as large as may be
     unsigned tile_size = 0;   // pixels of a tile's side; 0: as the options say
     std::size_t most_lights = std::numeric_limits<std::size_t>::max();
     std::vector<Parameter> parameters = {};

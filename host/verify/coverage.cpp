@@ -50,7 +50,8 @@ bool judges(const Check& check, const Launched& kernel) {
     if (kernel.stage != stage) return false;
     if (stage != "samples" || !kernel.file.starts_with("samplers/")) return true;
     // "ris" of "samplers/ris/ris.cl": the folder is the sampler's, and of those that extend it.
-    const std::string folder = kernel.file.substr(9, kernel.file.find('/', 9) - 9);
+    std::string folder = kernel.file.substr(9, kernel.file.find('/', 9) - 9);
+    std::ranges::replace(folder, '_', '-');  // as names have it
     const std::string own = "samples (" + folder;
     return check.stage.starts_with(own + ")") || check.stage.starts_with(own + "-");
 }

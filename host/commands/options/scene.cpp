@@ -70,7 +70,7 @@ void add_scene(CLI::App& command, SceneArguments& scene, unsigned height) {
 }
 
 void add_clusters(CLI::App& command, ClusterOptions& clusters) {
-    const char* group = "Clusters (samplers contribution and contribution-defensive)";
+    const char* group = "Clusters (samplers by contribution)";
     command.add_option("--tile-size", clusters.tile_size, "pixels of a tile's side")
         ->check(power_of_two())
         ->capture_default_str()
