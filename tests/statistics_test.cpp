@@ -226,8 +226,8 @@ TEST(statistics, cuts_of_many_lights_are_unbiased) {
     const Device& device = test::devices().front();
     const test::TestScene scene = small("many");
     const Moments reference = render_seeds(device, scene, options_for("exhaustive", 1), 1);
-    for (const std::string_view sampler : {"lighttree", "adaptive"})
-        for (const uint light_samples : {1u, 4u, 20u}) {
+    for (const std::string_view sampler : {"lighttree", "stochastic-lightcuts", "adaptive"})
+        for (const uint light_samples : {1u, 4u, 20u, 40u}) {
             SCOPED_TRACE(fmt::format("{}, {} light samples", sampler, light_samples));
             expect_unbiased(
                 judge(render_seeds(device, scene, options_for(sampler, light_samples), 120),

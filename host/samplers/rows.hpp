@@ -9,6 +9,7 @@
     ROW(power)                  \
     ROW(ris)                    \
     ROW(lighttree)              \
+    ROW(stochastic_lightcuts)   \
     ROW(adaptive)               \
     ROW(contribution)           \
     ROW(contribution_defensive)
