@@ -19,8 +19,8 @@ from selenium.webdriver.common.keys import Keys
 PROGRAM = str(pathlib.Path(sys.argv.pop(1)).resolve())
 SCENES = pathlib.Path(sys.argv.pop(1)).resolve()
 DRIVER = sys.argv.pop(1)
-SAMPLERS = ["exhaustive", "uniform", "power", "ris", "lighttree", "adaptive", "contribution",
-            "contribution-defensive"]
+SAMPLERS = [row["name"] for row in json.loads(
+    subprocess.run([PROGRAM, "samplers", "--json"], check=True, capture_output=True).stdout)]
 
 
 class ReportTest(unittest.TestCase):

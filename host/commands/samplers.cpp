@@ -32,9 +32,13 @@ int run_samplers(bool as_json) {
                 say("{:26}--set {}={}: {}\n", "", p.name, p.value, p.summary);
             continue;
         }
-        const nlohmann::json row = {
-            {"name", s.name},     {"summary", s.summary},       {"color", s.color},
-            {"biased", s.biased}, {"all_lights", s.all_lights}, {"parameters", parameters_of(s)}};
+        const nlohmann::json row = {{"name", s.name},
+                                    {"summary", s.summary},
+                                    {"color", s.color},
+                                    {"biased", s.biased},
+                                    {"all_lights", s.all_lights},
+                                    {"own_rays", s.own_rays},
+                                    {"parameters", parameters_of(s)}};
         say("  {}{}\n", row.dump(), &s == &samplers.back() ? "" : ",");
     }
     if (as_json) say("]\n");

@@ -116,6 +116,7 @@ struct Sampler {
     std::string_view color;    // in plots of many charts, #rrggbb
     bool biased = false;
     bool all_lights = false;  // light sample i is light i
+    bool own_rays = false;    // takes as many as it needs, whatever the number of light samples
     bool tree = false;        // needs the light tree
     bool clusters = false;    // clusters pixels, from surfaces at their centres
     bool learns = false;      // of a batch as a whole, which is as large as may be
