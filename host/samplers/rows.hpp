@@ -12,4 +12,6 @@
     ROW(stochastic_lightcuts)   \
     ROW(adaptive)               \
     ROW(contribution)           \
-    ROW(contribution_defensive)
+    ROW(contribution_defensive) \
+    ROW(octree)                 \
+    ROW(octree_virtual)
