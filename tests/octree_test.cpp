@@ -146,7 +146,7 @@ void check_bounds(Random& random, const reference::Point& point,
         const glm::dvec3 intensity = area_of(light) * glm::dvec3(light.emission);
         for (int k = 0; k < 2; ++k) {
             const glm::dvec3 found =
-                reference::unshadowed(point.surface, point.material(), point.camera, light,
+                reference::unshadowed(point.surface, point.material(), point.viewer, light,
                                       {random(0, 1), random(0, 1)})
                     .value /
                 intensity;

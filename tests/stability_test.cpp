@@ -263,7 +263,9 @@ double judge(const Point& point) {
         SCOPED_TRACE(sampler.name);
         const Verdict v = measure(point, sampler, truth, own_error, expected);
         if (sampler.name == "contribution") papers = v.probability;
-        if (!sampler.biased) EXPECT_GT(v.probability, 1e-6);
+        if (!sampler.biased) {
+            EXPECT_GT(v.probability, 1e-6);
+        }
         if (v.slope && !sampler.biased) {
             // A tenth and four deviations: of hundreds of slopes, all of few images, none is
             // beyond.

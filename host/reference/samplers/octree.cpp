@@ -106,7 +106,7 @@ double schlick(double cosine) { return std::pow(1 - std::clamp(cosine, 0.0, 1.0)
 NodeBounds bound_brdf(const Point& point, const glm::dvec3& towards, double spread, bool shared) {
     const Material& m = point.material();
     const glm::dvec3 normal(point.surface.normal);
-    const glm::dvec3 wo = direction_to_camera(point.camera, glm::dvec3(point.surface.position));
+    const glm::dvec3 wo = point.viewer.direction(glm::dvec3(point.surface.position));
     const double incidence = angle_between(normal, towards);
     const Range in = widened(incidence, spread);
     const Range cosine{positive_cosine(in.most), positive_cosine(in.least)};
@@ -165,7 +165,7 @@ NodeBounds bound_node(const OctreeNode& node, const Point& point) {
     if (elevation <= -spread || emission.most <= 0)
         return {glm::dvec3(0), glm::dvec3(0), glm::dvec3(0), false};
     const bool shared =
-        (node.emits & EMITS_AREA) != 0 && reflects(point.surface, point.material(), point.camera);
+        (node.emits & EMITS_AREA) != 0 && reflects(point.surface, point.material(), point.viewer);
     NodeBounds out = bound_brdf(point, towards, spread, shared);
     const double nearest = distance * (1 - sine);
     const double farthest = distance * (1 + sine);
@@ -178,6 +178,9 @@ NodeBounds bound_node(const OctreeNode& node, const Point& point) {
                           2;
     out.estimate *=
         elevation <= 0 ? 0 : virtual_emission(node, towards) * window / (distance * distance);
+    out.least *= point.viewer.throughput();
+    out.most *= point.viewer.throughput();
+    out.estimate *= point.viewer.throughput();
     out.doubtful = is_doubtful || std::abs(elevation - spread) < 4 * doubtful;
     return out;
 }
@@ -189,7 +192,7 @@ glm::dvec3 Octree::total(const Point& point) const {
         if (is_leaf(i)) {
             const Light& light = point.scene.lights[node.light];
             const bool triangle = static_cast<LightKind>(light.position.w) == LIGHT_TRIANGLE;
-            sum += unshadowed(point.surface, point.material(), point.camera, light,
+            sum += unshadowed(point.surface, point.material(), point.viewer, light,
                               glm::dvec2(triangle ? 1.0 / 3 : 0.5))
                        .value;
         } else {
@@ -252,13 +255,13 @@ Octree::Term Octree::draw(const Point& point, uint node, const PixelDraws& draws
     }
     const Light& light = point.scene.lights[nodes_[node].light];
     const glm::dvec2 u(unit_fraction(bits[1]), unit_fraction(bits[2]));
-    const Unshadowed found = unshadowed(point.surface, point.material(), point.camera, light, u);
+    const Unshadowed found = unshadowed(point.surface, point.material(), point.viewer, light, u);
     term.value = found.value / probability;
     term.shadow = found.shadow;
     term.rounding = found.rounding;
     if (draws.judge)
         term.slack =
-            rounding_slack(point.surface, point.material(), point.camera, light, u) / probability;
+            rounding_slack(point.surface, point.material(), point.viewer, light, u) / probability;
     return term;
 }
 
@@ -268,7 +271,7 @@ Octree::Term Octree::shade_virtual(const Point& point, uint node, bool judge) co
     const auto value_at = [&](const glm::dvec3& shift) {
         Surface moved = point.surface;
         moved.position += float4(glm::vec3(shift), 0);
-        return intensity * bound_node(n, {point.scene, point.camera, moved}).estimate;
+        return intensity * bound_node(n, {point.scene, point.viewer, moved}).estimate;
     };
     Term term{};
     term.value = value_at(glm::dvec3(0));
@@ -288,7 +291,7 @@ Octree::Term Octree::shade_virtual(const Point& point, uint node, bool judge) co
     if (!judge) return term;
     const double largest =
         std::max({std::abs(position.x), std::abs(position.y), std::abs(position.z), to_light,
-                  glm::length(glm::dvec3(point.camera.origin) - position)});
+                  point.viewer.distance(position)});
     for (int axis_number = 0; axis_number < 3; ++axis_number) {
         glm::dvec3 shift(0);
         shift[axis_number] = 8 * epsilon * largest;

@@ -102,11 +102,11 @@ static float3 reflected(Material m, float cosine, float lobe, float base, float 
 static Bounds bound_lobes(const Receiver* r, float3 towards, Angle incidence, Interval cosine,
                           Angle spread, bool shared) {
     const Material m = r->material;
-    const float n_out = max(fabs(dot(r->normal, r->to_camera)), LEAST_COSINE);
-    const float3 sum = towards + r->to_camera;
+    const float n_out = max(fabs(dot(r->normal, r->outgoing)), LEAST_COSINE);
+    const float3 sum = towards + r->outgoing;
     const float length2 = dot(sum, sum);
     const float3 h = sum / sqrt(max(length2, 1e-12f));
-    const Angle difference = angle_between(r->to_camera, h);
+    const Angle difference = angle_between(r->outgoing, h);
     const Angle theta = angle_between(r->normal, h);
     // Half of the spread, and how far the half vector may turn: as half as far in the plane of both
     // directions, and across it 1 / cosine of the difference angle times that.
@@ -181,6 +181,11 @@ static Bounds bound_node(__global const OctreeNode* node, const Receiver* r) {
     const float window = 0.5f * (range_window(distance2, node->near_range) +
                                  range_window(distance2, node->far_range));
     b.estimate *= height <= 0.0f ? 0.0f : virtual_emission(node, towards) * window / distance2;
+#if HAS_OUTGOING
+    b.least *= r->throughput;
+    b.most *= r->throughput;
+    b.estimate *= r->throughput;
+#endif
     return b;
 }
 

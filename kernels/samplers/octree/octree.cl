@@ -84,7 +84,7 @@ static float3 shade_virtual(__global const OctreeNode* node, const Receiver* r, 
 // Packet `item` of the rays, and values[48 * item + 16 * channel + lane], what each contributes
 // where nothing is in its way, cd/m2. What is random about a node depends on its first light alone.
 // `to_virtual`: rays go to virtual lights.
-KERNEL void octree_draw(Tiles tiles, Camera camera, __global const Surface* surfaces,
+KERNEL void octree_draw(Tiles tiles, VIEW_PARAMETERS, __global const Surface* surfaces,
                         __global const Material* materials, __global const Light* lights,
                         __global const OctreeNode* octree, uint octree_size, float epsilon,
                         uint to_virtual, uint pixel_sample, uint seed, uint start,
@@ -96,7 +96,7 @@ KERNEL void octree_draw(Tiles tiles, Camera camera, __global const Surface* surf
     uint node = start ? 0u : next_nodes[item];
     if (!item_in_image(tiles, item) || surface_missed(surfaces + item)) node = octree_size;
     if (node < octree_size) {
-        const Receiver receiver = make_receiver(surfaces + item, materials, camera);
+        const Receiver receiver = make_receiver(surfaces, item, materials, VIEW);
         const uint2 pixel = item_pixel(tiles, item);
         __global float* value_lanes = values + 48 * (ulong)item;
         if (start && epsilon > 0.0f)
