@@ -47,16 +47,17 @@ std::string command_of(const ChartOptions& o, const std::string& view, const std
     return out + " -o " + quote(output);
 }
 
-// The ladder in order, each step once; all samplers unless some are named.
-ChartOptions complete(ChartOptions options) {
+// The ladder in order, each step once; all samplers that take so many lights unless some are named.
+ChartOptions complete(ChartOptions options, std::size_t lights) {
     for (std::vector<uint>* steps : {&options.light_samples, &options.spp}) {
         std::ranges::sort(*steps);
         steps->erase(std::unique(steps->begin(), steps->end()), steps->end());
     }
     std::vector<std::string> samplers;
     for (const Sampler& sampler : all_samplers())
-        if (options.samplers.empty() ||
-            std::ranges::count(options.samplers, std::string(sampler.name)) > 0)
+        if (options.samplers.empty()
+                ? lights <= sampler.most_lights
+                : std::ranges::count(options.samplers, std::string(sampler.name)) > 0)
             samplers.emplace_back(sampler.name);
     options.samplers = samplers;
     const auto charted = [&](const std::string& name) {
@@ -122,10 +123,10 @@ int run_chart(const ChartArguments& arguments) {
     std::string output = arguments.output;
     if (output.empty()) output = fs::path(arguments.scene.file).stem().string() + "-chart";
     check_chart_folder("--output", output);
-    const ChartOptions options = complete(arguments.options);
     SceneArguments scene = arguments.scene;
     if (scene.width == 0 && scene.height == 0) scene.height = default_height;
-    const LoadedScene loaded = load(scene, options.quiet);
+    const LoadedScene loaded = load(scene, arguments.options.quiet);
+    const ChartOptions options = complete(arguments.options, loaded.scene.lights.size());
     if (loaded.scene.lights.empty())
         throw InputError(
             "{}: has no lights{}: samplers have none to choose from, and there is nothing to "
