@@ -101,6 +101,12 @@ Arguments Clustering::tables() const {
     return Arguments().set("cdf", matrix_.values).set("item_rows", device_item_rows_);
 }
 
+Arguments Clustering::clusters() const {
+    return Arguments()
+        .set("regions", device_regions_)
+        .set("representatives", device_representatives_);
+}
+
 std::vector<RowSum> Clustering::totals() const {
     return matrix_.totals.download(0, regions_.size());
 }

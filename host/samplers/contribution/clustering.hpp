@@ -32,6 +32,9 @@ class Clustering {
     /// The buffers that samplers draw from: cdf, item_rows.
     [[nodiscard]] Arguments tables() const;
 
+    /// What stages read that are made of the clusters: regions, representatives.
+    [[nodiscard]] Arguments clusters() const;
+
     /// Bytes per tile on the device.
     [[nodiscard]] static std::size_t tile_bytes(const ClusterOptions& options, uint light_count);
 

@@ -13,8 +13,9 @@ ClusterOptions with_rule(ClusterOptions options, bool weighed) {
 
 }  // namespace
 
-ByContribution::ByContribution(const SamplerContext& context, const Shares& shares, bool weighed)
-    : OneLight(context, "samplers/contribution/contribution.cl"),
+ByContribution::ByContribution(const SamplerContext& context, const Shares& shares, bool weighed,
+                               std::string_view file)
+    : OneLight(context, file),
       options_(with_rule(context.clusters, weighed)),
       light_count_(static_cast<double>(context.lights.size())),
       mixture_(mixture_of(shares, context.lights)) {

@@ -16,8 +16,9 @@ constexpr Shares defensive_shares = {.visible = 0.4f, .unshadowed = 0.5f, .power
 /// paper's.
 class ByContribution : public OneLight {
   public:
-    /// `weighed`: see ShadowRule.
-    ByContribution(const SamplerContext& context, const Shares& shares, bool weighed);
+    /// `weighed`: see ShadowRule. `file`: below kernels/, draws from the clustering's tables.
+    ByContribution(const SamplerContext& context, const Shares& shares, bool weighed,
+                   std::string_view file = "samplers/contribution/contribution.cl");
 
     [[nodiscard]] double expected_begin_rays(const Tiles& tiles) const override;
     void begin(const Tiles& tiles, const Buffer<Surface>& surfaces, uint seed,
@@ -27,6 +28,9 @@ class ByContribution : public OneLight {
     [[nodiscard]] ClusterFacts cluster_facts() const override;
 
     [[nodiscard]] static Footprint footprint(const SamplerLoad& load);
+
+    /// The last batch's; none without lights.
+    [[nodiscard]] const std::optional<Clustering>& clustering() const { return clustering_; }
 
   private:
     ClusterOptions options_;
