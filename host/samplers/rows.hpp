@@ -13,5 +13,6 @@
     ROW(adaptive)               \
     ROW(contribution)           \
     ROW(contribution_defensive) \
+    ROW(contribution_cached)    \
     ROW(octree)                 \
     ROW(octree_virtual)
