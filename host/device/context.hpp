@@ -15,6 +15,7 @@ struct DeviceMemory::Allocation {
     std::shared_ptr<Device::Context> context;
     cl::Buffer buffer;
     std::size_t bytes = 0;
+    std::shared_ptr<MemoryUse> use;  // that they count for, if any
     ~Allocation();
 };
 
@@ -29,6 +30,7 @@ struct Device::Context {
     cl::CommandQueue queue;
     std::size_t allocated = 0;
     std::size_t peak = 0;
+    std::shared_ptr<MemoryUse> use;  // that allocations count for, if any
     double compile_seconds = 0;
     std::map<std::string, double> stage_seconds;
     std::vector<std::pair<std::string, cl::Event>> running;  // stage and event of each launch

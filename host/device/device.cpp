@@ -52,7 +52,10 @@ std::string describe(const cl::Error& error) {
                        error.err());
 }
 
-DeviceMemory::Allocation::~Allocation() { context->allocated -= bytes; }
+DeviceMemory::Allocation::~Allocation() {
+    context->allocated -= bytes;
+    if (use) use->live -= bytes;
+}
 
 std::size_t DeviceMemory::bytes() const { return allocation_ ? allocation_->bytes : 0; }
 
@@ -137,8 +140,18 @@ DeviceMemory Device::allocate_bytes(std::size_t bytes, const void* shared) {
     allocation.bytes = bytes;
     context_->allocated += bytes;
     context_->peak = std::max(context_->peak, context_->allocated);
+    if (context_->use) {
+        allocation.use = context_->use;
+        allocation.use->live += bytes;
+        allocation.use->most = std::max(allocation.use->most, allocation.use->live);
+    }
     return memory;
 }
+
+Counting::Counting(const Device& device, std::shared_ptr<MemoryUse> use)
+    : context_(device.context_), before_(std::exchange(context_->use, std::move(use))) {}
+
+Counting::~Counting() { context_->use = std::move(before_); }
 
 void Device::finish() { context_->collect(); }
 

@@ -60,6 +60,12 @@ struct DeviceForm {
 /// than one.
 [[nodiscard]] std::size_t select_device(std::string_view selector);
 
+/// Bytes of buffers that count for one purpose (see Counting).
+struct MemoryUse {
+    std::size_t live = 0;  // now
+    std::size_t most = 0;  // at any one time
+};
+
 /// Bytes on a device; copies share them. Freed with the last copy.
 class DeviceMemory {
   public:
@@ -272,8 +278,22 @@ class Device {
     struct Context;  // OpenCL's objects
 
   private:
+    friend class Counting;
     [[nodiscard]] DeviceMemory allocate_bytes(std::size_t bytes, const void* shared = nullptr);
     std::shared_ptr<Context> context_;
+};
+
+/// As long as it lives, what its device allocates counts for `use`, and for nothing else.
+class Counting {
+  public:
+    Counting(const Device& device, std::shared_ptr<MemoryUse> use);
+    ~Counting();
+    Counting(const Counting&) = delete;
+    Counting& operator=(const Counting&) = delete;
+
+  private:
+    std::shared_ptr<Device::Context> context_;
+    std::shared_ptr<MemoryUse> before_;
 };
 
 }  // namespace manylight

@@ -75,39 +75,67 @@ Frame::Frame(const Device& device, const Scene& scene, const WideBvh& bvh, const
       options_(options),
       sampler_(find_sampler(options.sampler)),
       plan_(make_plan(device.info(), scene, bvh, options)),
+      memory_(plan_, options.sampler),
       schedule_(options_, plan_, scene.lights.size()),
       checkpoints_(options_, plan_),
       layers_(scene, options_, plan_) {}
 
 void Frame::prepare() {
-    const std::size_t pixels = std::size_t{options_.width} * options_.height;
-    const std::size_t items =
-        std::size_t{plan_.tiles_per_batch} * options_.tile_size() * options_.tile_size();
-    const bool tree = sampler_.tree;
-    if (tree) {
+    if (sampler_.tree) {
         Stopwatch watch(result_.prepare_seconds, device_);
         tree_ = build_light_tree(scene_.lights);
     }
-    const bool two_surfaces = plan_.centres && options_.jitters();
-    DeviceScene uploaded = upload_scene(device_, scene_, bvh_, camera_, tree ? &tree_ : nullptr,
-                                        two_surfaces ? 2 * items : items);
+    DeviceScene uploaded = upload();
+    {
+        const Counting counting(device_, memory_.image.use);
+        stages_ = std::make_shared<Stages>(device_, std::move(uploaded),
+                                           std::size_t{options_.width} * options_.height,
+                                           options_.estimates_error());
+    }
+    Stages& s = *stages_;
+    if (s.scene.shading.at("HAS_REFLECTIONS") != 0) s.reflections.emplace(device_, s.scene);
+    allocate_pixels();
+    if (!scene_.lights.empty()) make_sampler();
+    device_.compile();
+    if (s.sampler) {
+        Stopwatch watch(result_.prepare_seconds, device_);
+        const Counting counting(device_, memory_.sampler.use);
+        s.sampler->prepare();
+        device_.finish();
+    }
+    memory_.check();
+}
+
+// Items of a batch.
+std::size_t Frame::items() const {
+    return std::size_t{plan_.tiles_per_batch} * options_.tile_size() * options_.tile_size();
+}
+
+DeviceScene Frame::upload() {
+    const Counting counting(device_, memory_.scene.use);
+    DeviceScene uploaded =
+        upload_scene(device_, scene_, bvh_, camera_, sampler_.tree ? &tree_ : nullptr,
+                     has_two_surfaces() ? 2 * items() : items());
     if (options_.hide_emitters) uploaded.emission["HAS_EMISSION"] = 0;
     if (!options_.reflections) uploaded.shading["HAS_REFLECTIONS"] = 0;
-    stages_ = std::make_shared<Stages>(device_, uploaded, pixels, options_.estimates_error());
+    return uploaded;
+}
+
+void Frame::allocate_pixels() {
+    const Counting counting(device_, memory_.pixels.use);
     Stages& s = *stages_;
-    s.sampler = sampler_.make({device_, s.scene, scene_.lights, plan_.tiles_per_batch,
-                               options_.tile_size(), options_.width, options_.most_samples(),
-                               options_.clusters, values_of(sampler_, options_.parameters)});
-    if (uploaded.shading.at("HAS_REFLECTIONS") != 0) s.reflections.emplace(device_, s.scene);
-    s.surfaces = device_.allocate<Surface>(items);
-    if (plan_.centres) s.centres = two_surfaces ? device_.allocate<Surface>(items) : s.surfaces;
-    s.centres_first = two_surfaces ? items : 0;
-    s.estimates = {allocate_zeros(device_, items), allocate_zeros(device_, items)};
-    device_.compile();
-    if (scene_.lights.empty()) return;
-    Stopwatch watch(result_.prepare_seconds, device_);
-    s.sampler->prepare();
-    device_.finish();
+    s.surfaces = device_.allocate<Surface>(items());
+    if (plan_.centres)
+        s.centres = has_two_surfaces() ? device_.allocate<Surface>(items()) : s.surfaces;
+    s.centres_first = has_two_surfaces() ? items() : 0;
+    s.estimates = {allocate_zeros(device_, items()), allocate_zeros(device_, items())};
+}
+
+void Frame::make_sampler() {
+    const Counting counting(device_, memory_.sampler.use);
+    stages_->sampler = sampler_.make({device_, stages_->scene, scene_.lights, plan_.tiles_per_batch,
+                                      options_.tile_size(), options_.width, options_.most_samples(),
+                                      options_.clusters, values_of(sampler_, options_.parameters)});
 }
 
 // Rounds over the image, until it is as it should be, or there is no more time.
@@ -129,6 +157,7 @@ FrameResult Frame::render(Progress& progress, const Saving& saving, const FrameS
     }
     if (std::ranges::count(standing_.done, standing_.done[0]) != plan_.batches)
         result_.is_cut_short = true;
+    memory_.check();
     result_.is_resumed = checkpoints_.is_resumed();
     result_.primary_rays = standing_.primary_rays;
     result_.clusters = layers_.clusters();
@@ -149,8 +178,9 @@ void Frame::render_round(const Round& round, Progress& progress) {
         const FrameState* state = checkpoints_.state_of(i);
         // What is kept of a batch is lost where another one was in between.
         const bool fresh = standing_.done[i] == 0 || plan_.batches > 1 || state != nullptr;
+        const LightSampler* sampler = stages_->sampler.get();
         Work work{visit, state, fresh, Pace(visit),
-                  stages_->sampler->expected_begin_rays(visit.batch)};
+                  sampler != nullptr ? sampler->expected_begin_rays(visit.batch) : 0};
         if (plan_.centres && fresh) {
             Stopwatch watch(result_.prepare_seconds, device_);
             trace_centres(work, progress);
@@ -170,13 +200,14 @@ void Frame::trace_centres(const Work& work, Progress& progress) {
     if (options_.jitters() && work.state == nullptr)  // which has counted them
         standing_.primary_rays += pixel_count(batch);
     if (plan_.clusters) begin_batch(work, s.centres, progress);
-    layers_.keep(work.visit.number, batch, s.scene.materials, s.centres, *s.sampler);
+    layers_.keep(work.visit.number, batch, s.scene.materials, s.centres, s.sampler.get());
     device_.finish();
 }
 
 // Before it draws, the sampler makes of a batch what it needs: clusters, contributions and PDFs, or
 // cuts.
 void Frame::begin_batch(const Work& work, const Buffer<Surface>& surfaces, Progress& progress) {
+    const Counting counting(device_, memory_.sampler.use);
     LightSampler& sampler = *stages_->sampler;
     double done = 0;
     const RayCount count = [&](std::size_t rays) {
@@ -237,6 +268,7 @@ void Frame::trace_surfaces(const Work& work, uint i) {
 // Stages samples and shadows draw the light samples of pixel sample i. Returns whether all were
 // drawn.
 bool Frame::draw_lights(Work& work, uint i, Progress& progress) {
+    const Counting counting(device_, memory_.sampler.use);
     Stages& s = *stages_;
     const uint light_samples = schedule_.light_samples(i);
     work.pace.set_by_passes(false);
@@ -300,8 +332,7 @@ bool Frame::is_interrupted() const { return options_.interrupted && options_.int
 
 // Between two pixel samples of a batch that is on the way to `end` of them.
 void Frame::save(unsigned batch, uint end) {
-    checkpoints_.save(batch, end, standing_, stages_->image,
-                      scene_.lights.empty() ? nullptr : stages_->sampler.get());
+    checkpoints_.save(batch, end, standing_, stages_->image, stages_->sampler.get());
 }
 
 }  // namespace manylight

@@ -11,6 +11,7 @@
 #include "output/progress.hpp"
 #include "pipeline/checkpoint.hpp"
 #include "pipeline/layers.hpp"
+#include "pipeline/memory.hpp"
 #include "pipeline/plan.hpp"
 #include "pipeline/schedule.hpp"
 #include "samplers/table.hpp"
@@ -48,8 +49,12 @@ class Frame {
 
     [[nodiscard]] const Plan& plan() const { return plan_; }
 
-    /// Uploads the scene and builds the kernels.
+    /// Uploads the scene and builds the kernels. Throws std::logic_error, as render() does, where
+    /// more was allocated on the device than planned.
     void prepare();
+
+    /// What was allocated on the device so far, and what was planned.
+    [[nodiscard]] const FrameMemory& memory() const { return memory_; }
 
     /// To be called once, after prepare(). Goes on with `state` where one is given, saved by a
     /// frame of the same name(). Throws InputError for more spp than it can go on to.
@@ -62,13 +67,18 @@ class Frame {
     /// The lights' tree, where the sampler uses one; after prepare().
     [[nodiscard]] const LightTree& tree() const { return tree_; }
 
-    /// With what it has learned of the last batch, after render().
+    /// With what it has learned of the last batch, after render(); where there are lights.
     [[nodiscard]] LightSampler& sampler() const;
 
   private:
     struct Stages;
     struct Work;
 
+    [[nodiscard]] std::size_t items() const;
+    [[nodiscard]] bool has_two_surfaces() const { return plan_.centres && options_.jitters(); }
+    [[nodiscard]] DeviceScene upload();
+    void allocate_pixels();
+    void make_sampler();
     void render_round(const Round& round, Progress& progress);
     void trace_centres(const Work& work, Progress& progress);
     void begin_batch(const Work& work, const Buffer<Surface>& surfaces, Progress& progress);
@@ -87,6 +97,7 @@ class Frame {
     RenderOptions options_;
     const Sampler& sampler_;
     Plan plan_;
+    FrameMemory memory_;
     Schedule schedule_;
     Checkpoints checkpoints_;
     Layers layers_;

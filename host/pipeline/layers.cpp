@@ -14,17 +14,17 @@ Layers::Layers(const Scene& scene, const RenderOptions& options, const Plan& pla
 }
 
 void Layers::keep(unsigned number, const Tiles& batch, const Buffer<Material>& materials,
-                  const Buffer<Surface>& centres, const LightSampler& sampler) {
+                  const Buffer<Surface>& centres, const LightSampler* sampler) {
     if (kept_[number]) return;
     kept_[number] = true;
     std::size_t next = clusters_;  // number of the next cluster in the whole image
-    if (has_clusters_) clusters_ += sampler.cluster_count();
+    if (has_clusters_) clusters_ += sampler->cluster_count();
     if (layers_.empty()) return;
     BatchFacts facts;
     facts.origin = scene_.origin;
     facts.materials = materials.download();
     facts.surfaces = centres.download(0, item_count(batch));
-    if (has_clusters_) facts.clusters = sampler.cluster_facts();
+    if (has_clusters_) facts.clusters = sampler->cluster_facts();
     for (const uint split : facts.clusters.split) {
         facts.numbers.push_back(next);
         next += split == 0;

@@ -20,9 +20,9 @@ class Layers {
     Layers(const Scene& scene, const RenderOptions& options, const Plan& plan);
 
     /// Keeps what is known of a batch, if it is not kept yet: its materials, its surfaces at the
-    /// pixels' centres, and its clusters, where the plan has some.
+    /// pixels' centres, and its clusters, where the plan has some. `sampler`: null without lights.
     void keep(unsigned number, const Tiles& batch, const Buffer<Material>& materials,
-              const Buffer<Surface>& centres, const LightSampler& sampler);
+              const Buffer<Surface>& centres, const LightSampler* sampler);
 
     /// Fills layer `error`.
     void keep_error(const std::optional<ErrorEstimate>& error);

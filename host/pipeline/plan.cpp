@@ -7,6 +7,7 @@
 #include "pipeline/aov.hpp"
 #include "samplers/table.hpp"
 #include "stages/accumulate.hpp"
+#include "stages/device_scene.hpp"
 
 namespace manylight {
 namespace {
@@ -34,13 +35,6 @@ std::size_t coordinate_bytes(const Scene& scene) {
     std::size_t bytes = 0;
     for (const auto& set : scene.coordinates) bytes += bytes_of(set);
     return bytes;
-}
-
-// Of textures and what belongs to them.
-std::size_t texture_bytes(const Scene& scene) {
-    return bytes_of(scene.texels) + bytes_of(scene.textures) + bytes_of(scene.maps) +
-           bytes_of(scene.colors) + bytes_of(scene.tangents) + bytes_of(scene.alpha_of) +
-           bytes_of(scene.alpha_triangles) + coordinate_bytes(scene);
 }
 
 // Throws unless the device can hold each of the scene's and the image's buffers.
@@ -74,10 +68,6 @@ unsigned RenderOptions::tile_size() const {
     return own > 0 ? own : clusters.tile_size;
 }
 
-std::size_t Plan::total_bytes() const {
-    return scene_bytes + image_bytes + batch_bytes + (clusters ? 0 : matrix_bytes);
-}
-
 Plan make_plan(const DeviceInfo& device, const Scene& scene, const WideBvh& bvh,
                const RenderOptions& options) {
     const Sampler& sampler = find_sampler(options.sampler);
@@ -98,13 +88,8 @@ Plan make_plan(const DeviceInfo& device, const Scene& scene, const WideBvh& bvh,
                        return name != "error";
                    });
     check_aovs(options, plan.clusters);
-    plan.scene_bytes = bytes_of(bvh.nodes) + bytes_of(bvh.blocks) + bytes_of(scene.vertices) +
-                       bytes_of(scene.vertex_normals) + bytes_of(scene.indices) +
-                       bytes_of(scene.triangle_materials) + bytes_of(scene.materials) +
-                       bytes_of(scene.lights) + bytes_of(scene.cell_areas) +
-                       bytes_of(scene.instances) + texture_bytes(scene);
+    plan.scene_bytes = scene_bytes(scene, bvh, sampler.tree);
     const std::size_t light_tree = sampler.tree ? 2 * sizeof(LightNode) * lights : 0;
-    plan.scene_bytes += light_tree;
     plan.image_bytes = std::size_t{options.width} * options.height *
                        ImageSum::pixel_bytes(options.estimates_error());
     check_buffers(device, scene, bvh, light_tree,
@@ -114,21 +99,27 @@ Plan make_plan(const DeviceInfo& device, const Scene& scene, const WideBvh& bvh,
     const bool two_surfaces = plan.centres && options.jitters();
     const std::size_t surface_bytes =
         sizeof(Surface) + (scene.varies_materials() ? sizeof(Material) : 0);
-    const Footprint need = sampler.footprint(
-        {lights, tiles.count, size, options.most_samples(), options.clusters, parameters});
+    // Nothing is made of a sampler that has no lights to draw.
+    const auto footprint = [&](std::size_t batch) {
+        if (lights == 0) return Footprint{};
+        return sampler.footprint(
+            {lights, batch, size, options.most_samples(), options.clusters, parameters});
+    };
+    const Footprint need = footprint(tiles.count);
+    const std::size_t surfaces = two_surfaces ? 2 : 1;
     const std::size_t tile_bytes =
-        need.tile + tile_items * (surface_bytes * (two_surfaces ? 2 : 1) + 2 * sizeof(float4));
-    plan.matrix_bytes = need.image;
+        need.tile + tile_items * (surfaces * surface_bytes + 2 * sizeof(float4));
     const std::size_t budget =
         options.memory > 0 ? options.memory : std::min(device.global_memory / 2, default_budget);
-    const std::size_t fixed = plan.total_bytes() + need.fixed;
+    const std::size_t fixed = plan.scene_bytes + plan.image_bytes + need.image + need.fixed;
     if (fixed + tile_bytes > budget)
         throw InputError(
-            "--memory: {}{} is too little: the scene needs {}, the image {}, rays in work {}, and "
+            "--memory: {}{} is too little: the scene needs {}, the image {}, tables and rays in "
+            "work {}, and "
             "one tile {}{}",
             mebibytes(budget), options.memory > 0 ? "" : " (the default)",
-            mebibytes(plan.scene_bytes), mebibytes(plan.image_bytes), mebibytes(need.fixed),
-            mebibytes(tile_bytes),
+            mebibytes(plan.scene_bytes), mebibytes(plan.image_bytes),
+            mebibytes(need.image + need.fixed), mebibytes(tile_bytes),
             plan.clusters ? " (a smaller --max-depth or --tile-size needs less)" : "");
     if (need.tile_matrix > device.max_allocation)
         throw InputError(
@@ -145,8 +136,12 @@ Plan make_plan(const DeviceInfo& device, const Scene& scene, const WideBvh& bvh,
     most = std::clamp<std::size_t>(device.max_allocation / largest_buffer, 1, most);
     plan.tiles_per_batch = static_cast<unsigned>(most);
     plan.batches = static_cast<unsigned>((tiles.count + most - 1) / most);
-    plan.matrix_bytes += most * need.tile_matrix;
-    plan.batch_bytes = need.fixed + most * tile_bytes;
+    const Footprint taken = footprint(most);
+    plan.matrix_bytes = taken.image + most * taken.tile_matrix;
+    plan.sampler_bytes = taken.fixed + taken.image + most * taken.tile;
+    plan.point_bytes =
+        scene.varies_materials() ? most * tile_items * surfaces * sizeof(Material) : 0;
+    plan.batch_bytes = plan.sampler_bytes + most * (tile_bytes - need.tile);
     return plan;
 }
 

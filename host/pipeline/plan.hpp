@@ -56,14 +56,18 @@ struct RenderOptions {
 struct Plan {
     std::size_t scene_bytes = 0;
     std::size_t image_bytes = 0;
-    std::size_t batch_bytes = 0;   // of all buffers of a batch of tiles
-    std::size_t matrix_bytes = 0;  // of contributions and CDFs; with clusters in batch_bytes
+    std::size_t batch_bytes = 0;    // of all buffers of a batch of tiles, and the sampler's
+    std::size_t point_bytes = 0;    // of these: materials of the batch's points
+    std::size_t sampler_bytes = 0;  // of these: the sampler's
+    std::size_t matrix_bytes = 0;   // of these: contributions, CDFs, other tables of the image
     unsigned batches = 0;
     unsigned tiles_per_batch = 0;
     bool clusters = false;  // whether pixels are clustered
     bool centres = false;   // whether a G-buffer at the pixels' centres is kept
 
-    [[nodiscard]] std::size_t total_bytes() const;
+    [[nodiscard]] std::size_t total_bytes() const {
+        return scene_bytes + image_bytes + batch_bytes;
+    }
 };
 
 /// As many tiles in a batch as the budget and the device allow, each with its quadtree at its

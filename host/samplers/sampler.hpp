@@ -16,7 +16,7 @@
 
 namespace manylight {
 
-/// What a sampler is made for.
+/// What a sampler is made for. There are lights.
 struct SamplerContext {
     Device& device;
     const DeviceScene& scene;  // its lights in the tree's order, where the row asks for a tree
@@ -33,7 +33,8 @@ struct SamplerContext {
     }
 };
 
-/// Bytes that a sampler takes on the device.
+/// Bytes that a sampler takes on the device, at any one time: all that make(), prepare(), begin()
+/// and draw() allocate. A frame that finds more allocated ends with an error.
 struct Footprint {
     std::size_t fixed = 0;        // rays in work and the like
     std::size_t image = 0;        // tables of the whole image
@@ -42,10 +43,10 @@ struct Footprint {
     std::size_t tile_matrix = 0;  // the part of `tile` that is contributions and CDFs
 };
 
-/// What a footprint depends on.
+/// What a footprint depends on. There are lights.
 struct SamplerLoad {
     uint lights;
-    std::size_t tiles;  // of the image
+    std::size_t tiles;  // of a batch, at most
     unsigned tile_size;
     uint light_samples;  // of a pixel sample, at most
     const ClusterOptions& clusters;

@@ -34,6 +34,11 @@ bool varies_reflectance(const Scene& scene) {
     return false;
 }
 
+template <class Vector>
+std::size_t bytes_of(const Vector& values) {
+    return values.size() * sizeof(values[0]);
+}
+
 void set_textures(Device& device, const Scene& scene, Arguments& arguments) {
     const std::size_t vertices = scene.vertices.size();
     Buffer<glm::vec2> coordinates = device.allocate<glm::vec2>(scene.coordinates.size() * vertices);
@@ -114,6 +119,20 @@ DeviceScene with_lights(Device& device, DeviceScene scene, const std::vector<Lig
 void set_outgoing(DeviceScene& scene, const Buffer<Outgoing>& outgoing) {
     scene.arguments.set("outgoing", outgoing);
     scene.shading["HAS_OUTGOING"] = 1;
+}
+
+std::size_t scene_bytes(const Scene& scene, const WideBvh& bvh, bool tree) {
+    std::size_t bytes = bytes_of(bvh.nodes) + bytes_of(bvh.blocks) + bytes_of(bvh.instances) +
+                        bytes_of(scene.vertices) + bytes_of(scene.vertex_normals) +
+                        bytes_of(scene.indices) + bytes_of(scene.triangle_materials) +
+                        bytes_of(scene.materials) + bytes_of(scene.lights) +
+                        bytes_of(scene.texels) + bytes_of(scene.textures) + bytes_of(scene.maps) +
+                        bytes_of(scene.colors) + bytes_of(scene.tangents) +
+                        bytes_of(scene.alpha_of) + bytes_of(scene.alpha_triangles);
+    for (const auto& set : scene.coordinates) bytes += bytes_of(set);
+    if (find_features(scene).reflections) bytes += bytes_of(scene.cell_areas);
+    if (tree) bytes += 2 * sizeof(LightNode) * scene.lights.size();
+    return bytes;
 }
 
 }  // namespace manylight

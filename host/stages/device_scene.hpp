@@ -41,4 +41,7 @@ struct DeviceScene {
 /// `outgoing`[item] belongs to surfaces[item]. Kernels that were made before are not concerned.
 void set_outgoing(DeviceScene& scene, const Buffer<Outgoing>& outgoing);
 
+/// The bytes on the device that upload_scene() takes, but for points' materials.
+[[nodiscard]] std::size_t scene_bytes(const Scene& scene, const WideBvh& bvh, bool tree);
+
 }  // namespace manylight

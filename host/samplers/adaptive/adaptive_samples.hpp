@@ -43,8 +43,9 @@ class AdaptiveStage {
     /// What each pixel of the pass of the last draw() drew.
     [[nodiscard]] std::vector<std::vector<DrawnNode>> drawn(const Pass& pass) const;
 
+    /// Bytes of a packet on the device, at most: pixels that are drawn together share two counts.
     [[nodiscard]] static constexpr std::size_t packet_bytes() {
-        return ShadowStage::packet_bytes() + (64 + 48 + 2 + 3 + 1) * sizeof(float);
+        return ShadowStage::packet_bytes() + (64 + 48 + 2 + 3 + 2) * sizeof(float);
     }
 
   private:

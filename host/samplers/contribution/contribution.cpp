@@ -18,10 +18,9 @@ ByContribution::ByContribution(const SamplerContext& context, const Shares& shar
     : OneLight(context, file),
       options_(with_rule(context.clusters, weighed)),
       light_count_(static_cast<double>(context.lights.size())),
+      clustering_(context.device, context.scene, options_, context.tiles),
       mixture_(mixture_of(shares, context.lights)) {
-    if (context.lights.empty()) return;
-    clustering_.emplace(context.device, context.scene, options_, context.tiles);
-    tables_ = clustering_->tables();
+    tables_ = clustering_.tables();
 }
 
 // How many there will be shows only as clusters are made: half of the worst is taken for all.
@@ -31,28 +30,27 @@ double ByContribution::expected_begin_rays(const Tiles& tiles) const {
 
 void ByContribution::begin(const Tiles& tiles, const Buffer<Surface>& surfaces, uint /*seed*/,
                            const RayCount& progress) {
-    clustering_->build(tiles, surfaces, progress);
-    clustering_->normalise(mixture_);
+    clustering_.build(tiles, surfaces, progress);
+    clustering_.normalise(mixture_);
 }
 
 std::size_t ByContribution::begin_rays() const {
     std::size_t rays = 0;
-    for (const RowSum& total : clustering_->totals()) rays += total.facing_count;
+    for (const RowSum& total : clustering_.totals()) rays += total.facing_count;
     return rays;
 }
 
 std::size_t ByContribution::cluster_count() const {
-    return static_cast<std::size_t>(std::ranges::count(clustering_->split(), 0u));
+    return static_cast<std::size_t>(std::ranges::count(clustering_.split(), 0u));
 }
 
 ClusterFacts ByContribution::cluster_facts() const {
-    return {clustering_->item_rows(), clustering_->representatives(), clustering_->totals(),
-            clustering_->split()};
+    return {clustering_.item_rows(), clustering_.representatives(), clustering_.totals(),
+            clustering_.split()};
 }
 
 Footprint ByContribution::footprint(const SamplerLoad& load) {
     Footprint out = OneLight::footprint(load);
-    if (load.lights == 0) return out;
     out.tile += Clustering::tile_bytes(load.clusters, load.lights);
     out.fixed = ContributionStage::ray_bytes(load.lights);
     out.tile_matrix = most_regions(load.clusters) * Matrix::row_bytes(load.lights);

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <optional>
-
 #include "samplers/contribution/clustering.hpp"
 #include "samplers/one_light/one_light.hpp"
 
@@ -35,7 +33,7 @@ class ByContribution : public OneLight {
   private:
     ClusterOptions options_;
     double light_count_;
-    std::optional<Clustering> clustering_;  // where there are lights
+    Clustering clustering_;
     Mixture mixture_;
 };
 

@@ -12,7 +12,7 @@ void ByPower::prepare() { tables_.set("power_cdf", pdf_stage_.of_powers(mixture_
 
 Footprint ByPower::footprint(const SamplerLoad& load) {
     Footprint out = OneLight::footprint(load);
-    if (load.lights > 0) out.image = Matrix::row_bytes(load.lights);
+    out.image = Matrix::row_bytes(load.lights);
     return out;
 }
 
