@@ -15,7 +15,7 @@ import time
 # Scene and options: a plain render, one of several batches, clusters, a stop by the error, layers.
 RENDERS = (
     ("pinhole", "--spp", "16"),
-    ("cornell", "--spp", "12", "--memory", "12M"),
+    ("cornell", "--spp", "12", "--memory", "12400K"),
     ("blinds", "--spp", "6", "--sampler", "contribution"),
     ("cornell", "--target-error", "0.002", "--aov", "error,albedo"),
     ("glossy", "--spp", "8", "--sampler", "lighttree", "--pixel-centre"),
