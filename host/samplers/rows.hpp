@@ -15,4 +15,5 @@
     ROW(contribution_defensive) \
     ROW(contribution_cached)    \
     ROW(octree)                 \
-    ROW(octree_virtual)
+    ROW(octree_virtual)         \
+    ROW(ward)
