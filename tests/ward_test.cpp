@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Sampler ward: what its parameters promise.
+// Samplers ward and ward-unbiased: what their parameters promise.
 #include <cmath>
 #include <random>
 
@@ -63,13 +63,47 @@ test::TestScene bank(int count, float hidden, unsigned size = 32) {
         size, size);
 }
 
+// Of many seeds, the smallest probability that a pixel's mean difference from the image of all
+// lights is by chance, times the number of pixels. Lights with area have the same points in both
+// images.
+double probability(const Device& device, const test::TestScene& scene, RenderOptions options,
+                   int seeds) {
+    RenderOptions all = options;
+    all.sampler = "exhaustive";
+    all.parameters = {};
+    const std::size_t pixels = std::size_t{scene.width} * scene.height;
+    std::vector<double> sums(pixels), squares(pixels), expected(pixels);
+    for (int seed = 1; seed <= seeds; ++seed) {
+        options.seed = all.seed = static_cast<uint>(seed);
+        const Image image = test::render(device, scene, options).image;
+        const Image exact = test::render(device, scene, all).image;
+        for (std::size_t i = 0; i < pixels; ++i) {
+            const double difference = luminance_of(image, i) - luminance_of(exact, i);
+            sums[i] += difference;
+            squares[i] += difference * difference;
+            expected[i] += luminance_of(exact, i) / seeds;
+        }
+    }
+    double smallest = 1;
+    for (std::size_t i = 0; i < pixels; ++i) {
+        const double mean = sums[i] / seeds;
+        const double variance = std::max(squares[i] / seeds - mean * mean, 0.0) / (seeds - 1);
+        const double rounding = 1e-6 * expected[i] + 1e-9;
+        if (std::abs(mean) <= rounding) continue;
+        const double t = mean / std::max(std::sqrt(variance), rounding);
+        smallest =
+            std::min(smallest, static_cast<double>(pixels) * test::student_tail(t, seeds - 1));
+    }
+    return smallest;
+}
+
 }  // namespace
 
 // All lights are tested: also lights with area, whose points are the same, and so many lights that
 // an image is more than one slice.
 TEST(ward, tests_all_lights_where_tau_is_0) {
     FOR_EACH_DEVICE(device)
-    for (const std::string_view sampler : {"ward"}) {
+    for (const std::string_view sampler : {"ward", "ward-unbiased"}) {
         for (const std::string name : {"points", "kinds", "oriented"}) {
             SCOPED_TRACE(fmt::format("{} on {}", sampler, name));
             const test::TestScene& scene = test::scene_named(name);
@@ -153,6 +187,39 @@ TEST(ward, untested_lights_follow_their_histories) {
             largest_error(test::render(device, scene, options_for("ward", 1)).image,
                           render_all(device, scene).image);
         EXPECT_LT(error, hidden > 0 ? 0.1 : 2e-3) << hidden;
+    }
+}
+
+// Where histories are wrong, at the edge of a shadow in a tile, and few lights are tested: the
+// sampler that samples the rest is right on average, the one that guesses is not.
+TEST(ward, the_tail_is_sampled_without_bias) {
+    const Device& device = test::devices().front();
+    const test::TestScene scene = bank(40, 0.5f, 24);
+    for (const double certainty : {0.0, 1.0})
+        for (const uint light_samples : {1u, 3u, 24u}) {
+            RenderOptions options = options_for("ward-unbiased", 0.5, certainty);
+            options.light_samples = light_samples;
+            EXPECT_GT(probability(device, scene, options, 200), 1e-3)
+                << certainty << ", " << light_samples << " light samples";
+        }
+    EXPECT_LT(probability(device, scene, options_for("ward", 0.5), 20), 1e-6);
+}
+
+// Lights with area have one point per pixel sample, whether they are tested or drawn: given that,
+// what is tested may depend on what is visible of them.
+TEST(ward, the_tail_of_area_lights_is_sampled_without_bias) {
+    const Device& device = test::devices().front();
+    test::TestScene scene = test::scene_named("kinds");
+    scene.width = 20;
+    scene.height = 12;
+    scene.camera = make_camera(find_view(scene.scene, ""), scene.width, scene.height);
+    for (const double tau : {0.2, 1.0}) {
+        RenderOptions options = options_for("ward-unbiased", tau, 0);
+        options.light_samples = 2;
+        options.spp = 4;
+        EXPECT_GT(probability(device, scene, options, 200), 1e-3) << tau;
+        options.sampler = "ward";
+        EXPECT_LT(probability(device, scene, options, 100), 1e-6) << tau;
     }
 }
 

@@ -16,4 +16,5 @@
     ROW(contribution_cached)    \
     ROW(octree)                 \
     ROW(octree_virtual)         \
-    ROW(ward)
+    ROW(ward)                   \
+    ROW(ward_unbiased)
