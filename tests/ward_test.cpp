@@ -190,6 +190,34 @@ TEST(ward, untested_lights_follow_their_histories) {
     }
 }
 
+// A render that is resumed does not probe again, from another pixel sample's surfaces.
+TEST(ward, resumed_renders_keep_their_histories) {
+    const Device& device = test::devices().front();
+    const test::TestScene& scene = test::scene_named("many");
+    const unsigned lanes = device.form().bvh_width;
+    const WideBvh bvh =
+        build_wide_bvh(scene.scene, lanes, lanes, reach_of(scene.scene, scene.camera));
+    RenderOptions options = options_for("ward", 0.5);
+    options.pixel_centre = false;
+    options.width = scene.width;
+    options.height = scene.height;
+    FrameState state;
+    const Saving saving{.save = [&](const FrameState& saved) { state = saved; }};
+    const auto render = [&](uint spp, const FrameState* from) {
+        options.spp = spp;
+        Frame frame(device, scene.scene, bvh, scene.camera, options);
+        frame.prepare();
+        Progress quiet("", true);
+        return frame.render(quiet, saving, from);
+    };
+    (void)render(2, nullptr);
+    const FrameState half = state;
+    const FrameResult resumed = render(4, &half);
+    const FrameResult whole = render(4, nullptr);
+    EXPECT_EQ(resumed.image.values, whole.image.values);
+    EXPECT_EQ(resumed.shadow_rays, whole.shadow_rays);
+}
+
 // Where histories are wrong, at the edge of a shadow in a tile, and few lights are tested: the
 // sampler that samples the rest is right on average, the one that guesses is not.
 TEST(ward, the_tail_is_sampled_without_bias) {
