@@ -31,9 +31,10 @@ glm::dvec2 point_on(const Light& light, uint index, const PixelDraws& draws) {
     return {unit_fraction(bits[1]), unit_fraction(bits[2])};
 }
 
-// In descending order.
+// In descending order. Of those that do not shine on the pixel, what rounding may make of it is
+// added to the estimate's slack.
 std::vector<Lit> lights_of(const Point& point, const PixelDraws& draws,
-                           std::span<const uint> histories) {
+                           std::span<const uint> histories, Estimate& estimate) {
     std::vector<Lit> out;
     for (uint i = 0; i < point.scene.lights.size(); ++i) {
         const Light& light = point.scene.lights[i];
@@ -41,10 +42,13 @@ std::vector<Lit> lights_of(const Point& point, const PixelDraws& draws,
         const Unshadowed direct =
             unshadowed(point.surface, point.material(), point.camera, light, u);
         const double size = luminance(direct.value);
-        if (size <= 0) continue;
         const double slack =
             draws.judge ? rounding_slack(point.surface, point.material(), point.camera, light, u)
                         : 0;
+        if (size <= 0) {
+            estimate.slack += slack;
+            continue;
+        }
         out.push_back({i, direct, size, slack, share_of(histories[i])});
     }
     std::ranges::stable_sort(out, std::greater{}, &Lit::size);
@@ -137,7 +141,7 @@ Estimate Ward::estimate(const Tracer& tracer, const Point& point, const PixelDra
     const std::size_t count = point.scene.lights.size();
     const auto histories =
         std::span(options_.histories).subspan(draws.item / options_.tile_pixels * count, count);
-    const std::vector<Lit> lights = lights_of(point, draws, histories);
+    const std::vector<Lit> lights = lights_of(point, draws, histories, out);
     PixelWalk pixel(tracer, lights, draws.judge, out);
     const auto look_ahead = static_cast<std::size_t>(
         std::lround(std::pow(static_cast<double>(count), options_.certainty)));
