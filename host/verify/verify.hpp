@@ -85,7 +85,7 @@ class Verifier {
     [[nodiscard]] Device& device() { return device_; }
     [[nodiscard]] const Scene& scene() const { return scene_; }
     [[nodiscard]] const std::vector<Light>& lights() const { return scene_.lights; }
-    [[nodiscard]] const reference::Viewers& view() const { return view_; }
+    [[nodiscard]] const reference::Viewers& viewers() const { return view_; }
     [[nodiscard]] const VerifyOptions& options() const { return options_; }
     [[nodiscard]] const Tiles& tiles() const { return tiles_; }
     [[nodiscard]] const LightTree& tree() const { return tree_; }

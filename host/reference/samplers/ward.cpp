@@ -40,10 +40,10 @@ std::vector<Lit> lights_of(const Point& point, const PixelDraws& draws,
         const Light& light = point.scene.lights[i];
         const glm::dvec2 u = point_on(light, i, draws);
         const Unshadowed direct =
-            unshadowed(point.surface, point.material(), point.camera, light, u);
+            unshadowed(point.surface, point.material(), point.viewer, light, u);
         const double size = luminance(direct.value);
         const double slack =
-            draws.judge ? rounding_slack(point.surface, point.material(), point.camera, light, u)
+            draws.judge ? rounding_slack(point.surface, point.material(), point.viewer, light, u)
                         : 0;
         if (size <= 0) {
             estimate.slack += slack;
@@ -183,8 +183,9 @@ Estimate Ward::estimate(const Tracer& tracer, const Point& point, const PixelDra
     return out;
 }
 
-History hit_history(const Scene& scene, const Tracer& tracer, const Camera& camera,
-                    std::span<const Surface> items, uint number, uint light, uint seed) {
+History hit_history(const Scene& scene, const Tracer& tracer, const Viewers& viewers,
+                    std::size_t first, std::span<const Surface> items, uint number, uint light,
+                    uint seed) {
     History out;
     const Light& source = scene.lights[light];
     const auto bits = random_bits(number, RANDOM_HISTORIES, light, seed);
@@ -192,14 +193,16 @@ History hit_history(const Scene& scene, const Tracer& tracer, const Camera& came
         // A random item of the probe's sixteenth.
         const auto random = step_bits(bits[0], probe);
         const std::size_t within = (items.size() * random) >> 32;
-        const Surface& surface = items[(items.size() * probe + within) / WARD_PROBES];
+        const std::size_t item = (items.size() * probe + within) / WARD_PROBES;
+        const Surface& surface = items[item];
         if (surface.position.w < 0) continue;
         const glm::dvec2 u(unit_fraction(step_bits(bits[1], probe)),
                            unit_fraction(step_bits(bits[2], probe)));
         const Material& material = scene.materials[surface.shading];
-        const Unshadowed direct = unshadowed(surface, material, camera, source, u);
+        const Viewer viewer = viewers.of(first + item);
+        const Unshadowed direct = unshadowed(surface, material, viewer, source, u);
         const double size = luminance(direct.value);
-        if (size < rounding_slack(surface, material, camera, source, u)) ++out.undecided;
+        if (size < rounding_slack(surface, material, viewer, source, u)) ++out.undecided;
         if (size <= 0) continue;
         ++out.traced;
         if (tracer.occlusion_is_borderline(direct.shadow, direct.rounding)) ++out.undecided;

@@ -34,9 +34,9 @@ struct History {
 };
 
 /// Stage histories for one light of a tile, which is tile `number` of the image, from the surfaces
-/// of its items (their w negative where there is none).
-[[nodiscard]] History hit_history(const Scene& scene, const Tracer& tracer, const Camera& camera,
-                                  std::span<const Surface> items, uint number, uint light,
-                                  uint seed);
+/// of its items (their w negative where there is none), from item `first` of the batch on.
+[[nodiscard]] History hit_history(const Scene& scene, const Tracer& tracer, const Viewers& viewers,
+                                  std::size_t first, std::span<const Surface> items, uint number,
+                                  uint light, uint seed);
 
 }  // namespace manylight::reference

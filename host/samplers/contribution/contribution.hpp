@@ -28,7 +28,7 @@ class ByContribution : public OneLight {
     [[nodiscard]] static Footprint footprint(const SamplerLoad& load);
 
     /// The last batch's; none without lights.
-    [[nodiscard]] const std::optional<Clustering>& clustering() const { return clustering_; }
+    [[nodiscard]] const Clustering& clustering() const { return clustering_; }
 
   private:
     ClusterOptions options_;

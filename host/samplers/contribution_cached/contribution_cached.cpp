@@ -12,21 +12,20 @@ ContributionCached::ContributionCached(const SamplerContext& context)
     : ByContribution(context, defensive_shares, true,
                      "samplers/contribution_cached/contribution_cached.cl"),
       most_rows_(static_cast<uint>(context.parameter("rows"))),
-      least_cosine_(static_cast<float>(std::cos(glm::radians(context.parameter("angle"))))) {
-    if (!clustering()) return;
-    neighbours_.emplace(context.device, context.tiles, most_regions(context.clusters));
-    tables_.set(neighbours_->tables()).set("most_rows", most_rows_);
+      least_cosine_(static_cast<float>(std::cos(glm::radians(context.parameter("angle"))))),
+      neighbours_(context.device, context.tiles, most_regions(context.clusters)) {
+    tables_.set(neighbours_.tables()).set("most_rows", most_rows_);
 }
 
 void ContributionCached::begin(const Tiles& tiles, const Buffer<Surface>& surfaces, uint seed,
                                const RayCount& progress) {
     ByContribution::begin(tiles, surfaces, seed, progress);
-    neighbours_->find(tiles, surfaces, *clustering(), least_cosine_);
+    neighbours_.find(tiles, surfaces, clustering(), least_cosine_);
 }
 
 Footprint ContributionCached::footprint(const SamplerLoad& load) {
     Footprint out = ByContribution::footprint(load);
-    if (load.lights > 0) out.tile += NeighbourStage::tile_bytes(most_regions(load.clusters));
+    out.tile += NeighbourStage::tile_bytes(most_regions(load.clusters));
     return out;
 }
 

@@ -23,7 +23,7 @@ class ContributionCached : public ByContribution {
   private:
     uint most_rows_;
     float least_cosine_;
-    std::optional<NeighbourStage> neighbours_;  // where there are lights
+    NeighbourStage neighbours_;
 };
 
 }  // namespace manylight

@@ -58,7 +58,7 @@ Check check_neighbours(Verifier& verifier, const Sampler& sampler) {
                                 verifier.lights(), tiles.count, tiles.size, tiles.width, 1,
                                 verifier.options().clusters, values_of(sampler)});
     drawing.begin(tiles, verifier.surfaces(), verifier.options().seed, [](std::size_t) {});
-    const Clustering& clustering = *drawing.clustering();
+    const Clustering& clustering = drawing.clustering();
     const std::vector<uint> representatives = clustering.representatives();
     const std::vector<Surface>& surfaces = verifier.found_surfaces();
     const auto neighbours = drawing.tables().download<uint>("neighbours");

@@ -47,8 +47,8 @@ Check check_histories(Verifier& verifier, const Sampler& sampler) {
     for (std::size_t i = 0; i < found.size(); i += stride) {
         const auto tile = static_cast<uint>(i / lights);
         const reference::History expected =
-            reference::hit_history(verifier.scene(), verifier.tracer(), verifier.camera(),
-                                   std::span(surfaces).subspan(tile * area, area),
+            reference::hit_history(verifier.scene(), verifier.tracer(), verifier.viewers(),
+                                   tile * area, std::span(surfaces).subspan(tile * area, area),
                                    tiles.first + tile, static_cast<uint>(i % lights), options.seed);
         const uint history = expected.traced + 65536 * expected.passed;
         check.excuse(static_cast<int>(expected.undecided));

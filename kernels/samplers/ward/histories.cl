@@ -4,7 +4,7 @@
 #include "samplers/ward/walk.h"
 
 // histories[tile * light_count + light] (shared/ward.h). One tile and light per work-item.
-KERNEL void ward_probe(Tiles tiles, Camera camera, __global const Surface* surfaces,
+KERNEL void ward_probe(Tiles tiles, VIEW_PARAMETERS, __global const Surface* surfaces,
                        __global const Material* materials, __global const Light* lights,
                        uint light_count, uint seed, BVH_PARAMETERS, __global uint* histories) {
     const ulong i = get_global_id(0);
@@ -18,7 +18,7 @@ KERNEL void ward_probe(Tiles tiles, Camera camera, __global const Surface* surfa
         const uint item =
             tile * area + stratified_below(area, probe, WARD_PROBES, step_bits(bits.x, probe));
         if (!item_in_image(tiles, item) || surface_missed(surfaces + item)) continue;
-        const Receiver receiver = make_receiver(surfaces + item, materials, camera);
+        const Receiver receiver = make_receiver(surfaces, item, materials, VIEW);
         const float2 u =
             (float2)(unit_float(step_bits(bits.y, probe)), unit_float(step_bits(bits.z, probe)));
         Ray shadow;

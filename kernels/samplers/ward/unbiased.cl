@@ -12,7 +12,7 @@ static float tail_weight(float4 contribution, float visible) {
 // order of the scene, without those lights that were tested. values[48 * slot + 16 * channel +
 // lane]: what a light adds if it is visible; what it adds on average is taken away from the
 // estimate. Draws of one light share a ray.
-KERNEL void ward_draw_tail(Tiles tiles, Camera camera, __global const Surface* surfaces,
+KERNEL void ward_draw_tail(Tiles tiles, VIEW_PARAMETERS, __global const Surface* surfaces,
                            __global const Material* materials, __global const Light* lights,
                            uint light_count, uint pixel_sample, uint seed, uint first_item,
                            uint slots, uint first_draw, uint end_draw, uint draw_count,
@@ -27,7 +27,7 @@ KERNEL void ward_draw_tail(Tiles tiles, Camera camera, __global const Surface* s
     if (counts[slot].y < counts[slot].x) {
         __global const float4* own = contributions + slot_lights(slot, light_count);
         __global const uint* own_histories = item_histories(tiles, item, histories, light_count);
-        const Receiver receiver = make_receiver(surfaces + item, materials, camera);
+        const Receiver receiver = make_receiver(surfaces, item, materials, VIEW);
         const uint2 pixel = item_pixel(tiles, item);
         const uint number = pixel.y * tiles.width + pixel.x;
         const float4 walk = walks[slot];

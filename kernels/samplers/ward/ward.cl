@@ -36,7 +36,7 @@ static void add_to_rest(float4* walk, float term) {
 
 // Evaluates all lights at a pixel sample, and puts them in a heap. The rule's sum starts as that of
 // the first look_ahead lights in descending order.
-KERNEL void ward_weigh(Tiles tiles, Camera camera, __global const Surface* surfaces,
+KERNEL void ward_weigh(Tiles tiles, VIEW_PARAMETERS, __global const Surface* surfaces,
                        __global const Material* materials, __global const Light* lights,
                        uint light_count, uint pixel_sample, uint seed, uint look_ahead,
                        uint first_item, uint slots, __global float4* contributions,
@@ -48,7 +48,7 @@ KERNEL void ward_weigh(Tiles tiles, Camera camera, __global const Surface* surfa
     float4 walk = (float4)(0.0f);
     uint lit = 0u, sorted = 0u;
     if (item_in_image(tiles, item) && !surface_missed(surfaces + item)) {
-        const Receiver receiver = make_receiver(surfaces + item, materials, camera);
+        const Receiver receiver = make_receiver(surfaces, item, materials, VIEW);
         const uint2 pixel = item_pixel(tiles, item);
         const uint number = pixel.y * tiles.width + pixel.x;
         __global float4* own = contributions + slot_lights(slot, light_count);
@@ -97,7 +97,7 @@ static void add_step(__global const float* rays, uint slot, uint4 count,
 // Adds what the rays of the last step found, then makes those of the next: to the lights that
 // follow, as many as would be tested if all of them were visible, up to STEP_PACKETS packets. So no
 // ray is traced in vain.
-KERNEL void ward_step(Tiles tiles, Camera camera, __global const Surface* surfaces,
+KERNEL void ward_step(Tiles tiles, VIEW_PARAMETERS, __global const Surface* surfaces,
                       __global const Material* materials, __global const Light* lights,
                       uint light_count, uint pixel_sample, uint seed, float tau, uint look_ahead,
                       uint first_item, uint slots, __global const uint* histories,
@@ -119,7 +119,7 @@ KERNEL void ward_step(Tiles tiles, Camera camera, __global const Surface* surfac
         add_step(rays, slot, count, own_order, item_histories(tiles, item, histories, light_count),
                  own, &walk, &sum, &residual);
         float known = luminance(sum.xyz);  // if all that follow are visible
-        const Receiver receiver = make_receiver(surfaces + item, materials, camera);
+        const Receiver receiver = make_receiver(surfaces, item, materials, VIEW);
         const uint2 pixel = item_pixel(tiles, item);
         const uint number = pixel.y * tiles.width + pixel.x;
         for (; ray < 16u * STEP_PACKETS && count.y < count.x && !(max(walk.x, 0.0f) < tau * known);
