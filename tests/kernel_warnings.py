@@ -4,8 +4,8 @@
 usage: kernel_warnings.py CLANG KERNELS
 
 Options are varied as far as a file, with all that it includes, mentions them. Every target gets
-every form that differs for it, with all features and with none; each feature alone, all but each,
-and lanes that differ from the BVH's width take one target each, in turn.
+every form that differs for it, with all features; every form without features, each feature alone,
+all but each, and lanes that differ from the BVH's width take one target each.
 
 No function may take or return a vector wider than the registers of a processor of that form: unless
 the driver inlines it, how such a vector travels depends on the processor, and some refuse.
@@ -70,7 +70,8 @@ def combinations(text):
     words = set(re.findall(r"\w+", text)) - set(re.findall(r"#\s*define\s+(\w+)", text))
     plain, single = choices(sorted(w for w in words if re.fullmatch(r"HAS_[A-Z_]*[A-Z]", w)))
     every = [(target, FORMS[form]) for target, (_, forms) in TARGETS.items() for form in forms]
-    wanted = [(*place, chosen) for place in every for chosen in plain]
+    wanted = [(*place, plain[0]) for place in every]
+    wanted += [("x86_64", form, plain[1]) for form in FORMS.values()]
     wanted += [(*place, chosen) for place, chosen in zip(itertools.cycle(every), single)]
     mixed = ({**a, "LANES": b["LANES"]} for a, b in itertools.permutations(FORMS.values(), 2))
     wanted += [(target, form, plain[0]) for target, form in zip(itertools.cycle(TARGETS), mixed)]

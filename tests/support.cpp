@@ -211,7 +211,9 @@ FrameResult render(const Device& device, const TestScene& scene, RenderOptions o
     Frame frame(device, scene.scene, bvh, scene.camera, options);
     frame.prepare();
     Progress quiet("", true);
-    return frame.render(quiet);
+    FrameResult result = frame.render(quiet);
+    frame.memory().check();
+    return result;
 }
 
 double chi_squared_tail(double x, double k) {

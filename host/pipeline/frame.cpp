@@ -103,7 +103,6 @@ void Frame::prepare() {
         s.sampler->prepare();
         device_.finish();
     }
-    memory_.check();
 }
 
 // Items of a batch.
@@ -157,7 +156,6 @@ FrameResult Frame::render(Progress& progress, const Saving& saving, const FrameS
     }
     if (std::ranges::count(standing_.done, standing_.done[0]) != plan_.batches)
         result_.is_cut_short = true;
-    memory_.check();
     result_.is_resumed = checkpoints_.is_resumed();
     result_.primary_rays = standing_.primary_rays;
     result_.clusters = layers_.clusters();

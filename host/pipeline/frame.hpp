@@ -49,8 +49,7 @@ class Frame {
 
     [[nodiscard]] const Plan& plan() const { return plan_; }
 
-    /// Uploads the scene and builds the kernels. Throws std::logic_error, as render() does, where
-    /// more was allocated on the device than planned.
+    /// Uploads the scene and builds the kernels.
     void prepare();
 
     /// What was allocated on the device so far, and what was planned.

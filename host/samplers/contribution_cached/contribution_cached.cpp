@@ -26,6 +26,7 @@ void ContributionCached::begin(const Tiles& tiles, const Buffer<Surface>& surfac
 Footprint ContributionCached::footprint(const SamplerLoad& load) {
     Footprint out = ByContribution::footprint(load);
     out.tile += NeighbourStage::tile_bytes(most_regions(load.clusters));
+    out.fixed += sizeof(uint);  // the end of the last tile's
     return out;
 }
 
