@@ -215,9 +215,10 @@ constexpr double most_ratio = 1.2;  // of adaptive's error to the best other's w
 constexpr std::size_t few_lights = 200;
 
 // Numbers of pixel samples, and of images with so many. At hard points only one: few images do not
-// tell there how errors fall; nor with many lights, to save time.
-std::vector<std::pair<uint, uint>> ladder_of(const Point& point) {
-    if (point.hard || point.lights() > few_lights) return {{4, 8}};
+// tell there how errors fall; nor with many lights, nor of samplers that trace all that they need,
+// to save time.
+std::vector<std::pair<uint, uint>> ladder_of(const Point& point, const Sampler& sampler) {
+    if (point.hard || point.lights() > few_lights || sampler.own_rays) return {{4, 8}};
     return {{1, 4}, {4, 8}, {64, 1}};
 }
 
@@ -231,7 +232,7 @@ Verdict measure(const Point& point, const Sampler& sampler, const Image& truth, 
                 const Runs& expected) {
     Verdict out;
     std::vector<Step> steps;
-    for (const auto& [spp, seeds] : ladder_of(point)) {
+    for (const auto& [spp, seeds] : ladder_of(point, sampler)) {
         const Runs runs(point.render(sampler.name, spp, seeds), truth, own_error);
         EXPECT_EQ(runs.bad, 0u);
         if (runs.negative > 0) {

@@ -265,6 +265,28 @@ TEST(verify, emitter_in_its_own_plane) {
         expect_all_pass(device, scene, look({0, 1.5, 5}, {0, 1.5, 0}, 0.8), width, width * 3 / 4);
 }
 
+// A directional light that slants over strips by a hundredth of a degree to a few: the cosine is
+// little more than rounding.
+TEST(verify, grazing_sun) {
+    SceneMaker maker;
+    Mesh strips;
+    const glm::vec3 along = glm::normalize(glm::vec3(0.7f, 0.2f, -0.5f));  // of the light
+    const glm::vec3 across = glm::normalize(glm::cross(along, {0.3f, 0.9f, 0.1f}));
+    const glm::vec3 up = glm::cross(across, along);
+    for (int i = 0; i < 24; ++i) {
+        const float tilt = std::pow(10.f, -4 + 0.1f * static_cast<float>(i));
+        const glm::vec3 side = along + tilt * up;
+        strips.add_quad(0.1f * static_cast<float>(i - 12) * across - side, 0.09f * across,
+                        2.f * side);
+    }
+    maker.add(strips, maker.add(diffuse(glm::vec3(0.7f))));
+    maker.add(directional_light(along, glm::vec3(3)));
+    const Scene scene = maker.finish();
+    const Device& device = test::devices().back();
+    const glm::dvec3 from(3.0 * up + 0.3f * along);
+    expect_all_pass(device, scene, look(from, {0, 0, 0}, 0.8), 48, 36);
+}
+
 // A ground of 200 km of two triangles, whose common edge, as rounded, is centimetres wide.
 TEST(verify, wide_ground) {
     SceneMaker maker;

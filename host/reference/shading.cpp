@@ -25,8 +25,9 @@ double smith_visibility(double alpha, double n_l, double n_v) {
 
 // By how much rounding may have changed what a light's emission comes from.
 struct LightShift {
-    glm::dvec3 normal = glm::dvec3(0);  // of an area: of the cross product of its sides, m2
-    double versine = 0;                 // of a spot: 1 - the cosine to its axis
+    glm::dvec3 normal = glm::dvec3(0);   // of an area: of the cross product of its sides, m2
+    double versine = 0;                  // of a spot: 1 - the cosine to its axis
+    glm::dvec3 towards = glm::dvec3(0);  // of a directional one: unit direction to it
 };
 
 struct Emission {
@@ -169,7 +170,8 @@ Unshadowed shade(const glm::dvec3& position, const Surface& surface, const Mater
                  const LightShift& shift = {}) {
     const glm::dvec3 normal = glm::normalize(glm::dvec3(surface.normal));
     const glm::dvec3 horizon(surface.horizon);
-    const Emission e = emission(light, position, u, shift);
+    Emission e = emission(light, position, u, shift);
+    if (e.infinite) e.towards += shift.towards;
     Unshadowed out;
     out.value = glm::dvec3(0);
     if (e.light == glm::dvec3(0)) return out;
@@ -257,7 +259,8 @@ double rounding_slack(const Surface& surface, const Material& material, const Vi
     const auto change = [&](const glm::dvec3& step, const LightShift& light_shift) {
         double most = 0;
         for (const double sign : {-1.0, 1.0}) {
-            const LightShift to{sign * light_shift.normal, sign * light_shift.versine};
+            const LightShift to{sign * light_shift.normal, sign * light_shift.versine,
+                                sign * light_shift.towards};
             const glm::dvec3 value =
                 shade(position + sign * step, surface, material, viewer, light, u, to).value;
             most = std::max(most, glm::length(value - centre));
@@ -269,7 +272,8 @@ double rounding_slack(const Surface& surface, const Material& material, const Vi
         glm::dvec3 along(0);
         along[axis] = 1;
         slack += change(shift * along, {});
-        if (has_area(light)) slack += change(glm::dvec3(0), {normal_rounding(light) * along, 0});
+        if (has_area(light)) slack += change(glm::dvec3(0), {normal_rounding(light) * along});
+        if (e.infinite) slack += change(glm::dvec3(0), {.towards = 4 * epsilon * along});
     }
     if (static_cast<LightKind>(light.position.w) == LIGHT_SPOT)
         slack += change(glm::dvec3(0), {glm::dvec3(0), versine_rounding(cosine_to_axis(light, e))});

@@ -104,7 +104,8 @@ struct Unshadowed {
 /// By how much rounding to single precision can change the value of unshadowed(): the changes under
 /// shifts of the position along each axis by 8 units in the last place of the coordinates and of
 /// the distance to the light, of an area's normal (a cross product) by 2 units of the product of
-/// its sides, and of 1 - the cosine to a spot's axis by what 4 units do to the sine, added up.
+/// its sides, of the direction to a directional light by 4 units, and of 1 - the cosine to a spot's
+/// axis by what 4 units do to the sine, added up.
 [[nodiscard]] double rounding_slack(const Surface& surface, const Material& material,
                                     const Viewer& viewer, const Light& light, const glm::dvec2& u);
 

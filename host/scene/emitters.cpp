@@ -79,18 +79,23 @@ class Coverage {
 };
 
 // Points along a side of a part, over which it is averaged; as many as texels where these say what
-// is there.
+// is there, if these are not too many for all parts of an emitter.
 constexpr double least_points = 16;
 constexpr double most_points = 128;
+constexpr double points_of_emitter = 1 << 23;
 
 glm::vec3 radiance_of_part(const Scene& scene, const Emitter& e, glm::dvec2 corner, glm::dvec2 u,
                            glm::dvec2 v, bool triangle) {
     const TextureOn emission(scene, e, MAP_EMISSION);
     const Coverage coverage(scene, e);
     double points = least_points;
-    if (coverage.varies())
+    if (coverage.varies()) {
+        const double share = std::abs(u.x * v.y - u.y * v.x);  // of the emitter, a part's
+        const double most =
+            std::clamp(std::sqrt(points_of_emitter * share), least_points, most_points);
         points = std::clamp(std::ceil(std::max(coverage.texels(u), coverage.texels(v))),
-                            least_points, most_points);
+                            least_points, most);
+    }
     const int side = static_cast<int>(points);
     std::optional<TextureLevel> texels;
     if (emission.texture())

@@ -109,7 +109,8 @@ Check Verifier::samples(const Sampler& sampler) {
     drawing->draw(tiles, sample, count, surfaces, estimates,
                   [](const auto&, std::size_t) { return true; });
     const std::vector<float4> found = estimates.sums.download();
-    const std::size_t pixels = std::max<std::size_t>(options_.most_entries / count, 4);
+    const uint entries = sampler.own_rays ? std::max(count, lights) : count;  // of a pixel, at most
+    const std::size_t pixels = std::max<std::size_t>(options_.most_entries / entries, 4);
     const std::size_t stride = pixel_count(tiles) / pixels | 1;
     struct Pixel {
         uint x, y;
