@@ -64,7 +64,8 @@ class HeaderTest(CommandTest):
 
     # What an image does not depend on, or not by itself.
     NOT_OF_THE_IMAGE = {"help", "output", "time", "threads", "cluster-map", "top-lights", "stats",
-                        "checkpoint", "checkpoint-every", "resume", "quiet", "like"}
+                        "checkpoint", "checkpoint-every", "resume", "quiet", "like",
+                        "set"}  # where the sampler has parameters
 
     def test_headers_tell_all_options(self):
         scene = self.write_moving_lamp()

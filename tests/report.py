@@ -192,7 +192,7 @@ class ReportTest(unittest.TestCase):
         for words in ("adaptive, 4 light samples × 2 spp: relMSE", "quartiles", "without error"):
             self.assertIn(words, " ".join(seen))
         self.press("samples-plot", Keys.ARROW_LEFT)
-        self.assertIn("contribution-defensive", self.js("element('plot-value').textContent"))
+        self.assertIn(SAMPLERS[-1] + ", ", self.js("element('plot-value').textContent"))
         webdriver.ActionChains(self.driver).move_to_element(self.find("#samples-plot")).perform()
         self.wait_for("errorPlots.samples.tooltip.opacity > 0")
         self.assertIn("s", self.js("errorPlots.samples.tooltip.title[0]"))
@@ -284,6 +284,12 @@ class ReportTest(unittest.TestCase):
         dark = self.js(back)
         self.assertEqual(dark, "rgb(21, 23, 26)")
         self.changes("time-plot", lambda: self.select("theme", "light"))
+        swatches = "[...document.querySelectorAll('.swatch')].map(s => s.style.background)"
+        light = self.js(swatches)
+        self.assertEqual(len(set(light)), len(SAMPLERS))
+        self.assertIn("rgb(214, 39, 40)", light[SAMPLERS.index("adaptive")])  # as its row says
+        self.select("theme", "dark")
+        self.assertEqual(len(set(self.js(swatches)) - set(light)), len(SAMPLERS))
         self.select("theme", "")
         emulate = self.driver.execute_cdp_cmd
         feature = {"name": "prefers-color-scheme", "value": "dark"}

@@ -283,7 +283,7 @@ TEST(verify, grazing_sun) {
     maker.add(directional_light(along, glm::vec3(3)));
     const Scene scene = maker.finish();
     const Device& device = test::devices().back();
-    const glm::dvec3 from(3.0 * up + 0.3f * along);
+    const glm::dvec3 from(3.f * up + 0.3f * along);
     expect_all_pass(device, scene, look(from, {0, 0, 0}, 0.8), 48, 36);
 }
 

@@ -78,6 +78,7 @@ json samplers_json(const Chart& chart) {
         out.push_back(
             {{"name", name},
              {"summary", sampler.summary},
+             {"color", sampler.color},
              {"biased", sampler.biased},
              {"all_lights", sampler.all_lights},
              {"compile_seconds", compiled == chart.compile_seconds.end() ? 0 : compiled->second}});

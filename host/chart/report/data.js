@@ -14,12 +14,17 @@ function make(kind, properties = {}, ...children) {
 
 const methods = chart.samplers.map((sampler, i) => ({
   ...sampler,
-  color: `--m${i % 8}`,
   point: ["circle", "rect", "triangle", "rectRot", "star", "crossRot", "cross", "rectRounded"][i % 8],
   settings: chart.settings.filter((s) => s.sampler === sampler.name),
   shown: true,
 }));
 const methodNamed = (name) => methods.find((m) => m.name === name);
+// A method's colour, lighter on dark ground.
+function colorOf(method) {
+  const dark = getComputedStyle(document.documentElement).colorScheme === "dark";
+  const channels = [1, 3, 5].map((at) => parseInt(method.color.slice(at, at + 2), 16));
+  return `rgb(${channels.map((c) => Math.round(dark ? c + 0.4 * (255 - c) : c)).join(", ")})`;
+}
 const cssColor = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 
 // Three digits, with an exponent where that is shorter.

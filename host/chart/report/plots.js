@@ -43,7 +43,7 @@ function errorData(kind) {
     for (const spp of sppSteps) {
       const settings = method.settings.filter((s) => s.spp === spp).sort((a, b) => drawn(a) - drawn(b));
       if (!settings.length) continue;
-      const color = cssColor(method.color);
+      const color = colorOf(method);
       const hollow = settings.map((s) => s.limited_by_reference || s[metric()].median === 0);
       datasets.push({
         method, settings,
@@ -173,7 +173,9 @@ for (const method of methods) {
   const box = make("input", { type: "checkbox", checked: true, name: "method", value: method.name, disabled: !method.settings.length });
   box.addEventListener("change", () => { method.shown = box.checked; drawErrors(); });
   const swatch = make("span", { className: "swatch" });
-  swatch.style.background = `var(${method.color})`;
+  const paint = () => { swatch.style.background = colorOf(method); };
+  paint();
+  onTheme.push(paint);
   const label = make("label", { title: method.summary }, box, swatch, method.name + (method.biased ? " (biased)" : ""));
   element("methods").append(label);
 }
