@@ -10,7 +10,7 @@ namespace {
 
 Sampler row_with_parameters() {
     Sampler row = find_sampler("uniform");
-    row.parameters = {{"tau", 0.05, 0, 1, "a threshold"}, {"reach", 8, 1, 64, "a number"}};
+    row.parameters = {{"tau", 0.05, 0, 1, "a threshold"}, {"reach", 8, 1, 64, "a number", true}};
     return row;
 }
 
@@ -34,6 +34,7 @@ TEST(samplers, parameters_have_defaults_and_limits) {
     EXPECT_EQ(refusal({{"tau", 1}, {"reach", 64}}), "");
     EXPECT_EQ(refusal({{"tau", 1.5}}), "--set tau=1.5: it is from 0 to 1");
     EXPECT_EQ(refusal({{"reach", 0}}), "--set reach=0: it is from 1 to 64");
+    EXPECT_EQ(refusal({{"reach", 8.5}}), "--set reach=8.5: it is a whole number");
     EXPECT_EQ(refusal({{"Tau", 1}}),
               "--set Tau=1: sampler uniform has no such parameter (it has: tau, reach)");
 }

@@ -16,6 +16,7 @@ nlohmann::json parameters_of(const Sampler& sampler) {
                         {"value", p.value},
                         {"least", p.least},
                         {"most", p.most},
+                        {"whole", p.whole},
                         {"summary", p.summary}});
     return list;
 }

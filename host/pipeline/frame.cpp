@@ -148,7 +148,7 @@ FrameResult Frame::render(Progress& progress, const Saving& saving, const FrameS
         if (result_.is_cut_short && is_interrupted()) break;
         const std::optional<Round> next = schedule_.next_round(round, result_.error);
         if (!next) {
-            if (checkpoints_.are_saved() && round.end < options_.spp)
+            if (has_drawn_ && checkpoints_.are_saved() && round.end < options_.spp)
                 save(plan_.batches - 1, round.end);
             break;
         }
@@ -189,14 +189,19 @@ void Frame::render_round(const Round& round, Progress& progress) {
     }
 }
 
+// Whether the rays of a batch's beginning count: not again where a render goes on, or where a batch
+// that was done is begun for its layers alone.
+bool Frame::is_counted(const Work& work) {
+    return work.state == nullptr && work.visit.first < work.visit.end;
+}
+
 // Stage gbuffer finds the surfaces at the pixels' centres; they are clustered, and their layers
 // kept.
 void Frame::trace_centres(const Work& work, Progress& progress) {
     Stages& s = *stages_;
     const Tiles& batch = work.visit.batch;
     s.gbuffer.trace(batch, {}, s.centres, s.centres_first);
-    if (options_.jitters() && work.state == nullptr)  // which has counted them
-        standing_.primary_rays += pixel_count(batch);
+    if (options_.jitters() && is_counted(work)) standing_.primary_rays += pixel_count(batch);
     if (plan_.clusters) begin_batch(work, s.centres, progress);
     layers_.keep(work.visit.number, batch, s.scene.materials, s.centres, s.sampler.get());
     device_.finish();
@@ -216,8 +221,8 @@ void Frame::begin_batch(const Work& work, const Buffer<Surface>& surfaces, Progr
     };
     if (work.state == nullptr) {
         sampler.begin(work.visit.batch, surfaces, options_.seed, count);
-        standing_.begin_rays += sampler.begin_rays();
-    } else {  // which has counted them
+        if (is_counted(work)) standing_.begin_rays += sampler.begin_rays();
+    } else {
         sampler.resume(work.visit.batch, surfaces, options_.seed, *work.state, count);
     }
 }
@@ -234,9 +239,16 @@ void Frame::take_samples(Work& work, Progress& progress) {
             break;
         }
         work.pace.begin();
-        trace_surfaces(work, i);
-        if (i == visit.first && work.fresh && !plan_.clusters && light_samples > 0)
+        const bool begins = i == visit.first && work.fresh && !plan_.clusters && light_samples > 0;
+        if (begins && i > 0) {
+            // With the first sample's surfaces: what is made of a batch is the same whenever.
+            trace_surfaces(work, 0);
             begin_batch(work, s.surfaces, progress);
+        }
+        const bool traced = trace_surfaces(work, i);
+        if (traced || i == 0) standing_.primary_rays += pixel_count(visit.batch);
+        if (begins && i == 0) begin_batch(work, s.surfaces, progress);
+        has_drawn_ = true;
         standing_.done[visit.number] = i + 1;
         if (!draw_lights(work, i, progress)) {
             result_.is_cut_short = true;
@@ -254,13 +266,14 @@ void Frame::take_samples(Work& work, Progress& progress) {
     }
 }
 
-// Stage gbuffer finds the surfaces of pixel sample i, unless they are at hand.
-void Frame::trace_surfaces(const Work& work, uint i) {
+// Stage gbuffer finds the surfaces of pixel sample i, unless they are at hand. Returns whether it
+// traced them.
+bool Frame::trace_surfaces(const Work& work, uint i) {
     Stages& s = *stages_;
     const bool alike = !options_.jitters() && !passes_by_chance(scene_);
     const bool at_hand = alike && (i > work.visit.first || plan_.centres);
     if (!at_hand) s.gbuffer.trace(work.visit.batch, schedule_.position(i), s.surfaces);
-    if (!at_hand || i == 0) standing_.primary_rays += pixel_count(work.visit.batch);
+    return !at_hand;
 }
 
 // Stages samples and shadows draw the light samples of pixel sample i. Returns whether all were

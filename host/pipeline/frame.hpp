@@ -74,6 +74,7 @@ class Frame {
     struct Work;
 
     [[nodiscard]] std::size_t items() const;
+    [[nodiscard]] static bool is_counted(const Work& work);
     [[nodiscard]] bool has_two_surfaces() const { return plan_.centres && options_.jitters(); }
     [[nodiscard]] DeviceScene upload();
     void allocate_pixels();
@@ -82,7 +83,7 @@ class Frame {
     void trace_centres(const Work& work, Progress& progress);
     void begin_batch(const Work& work, const Buffer<Surface>& surfaces, Progress& progress);
     void take_samples(Work& work, Progress& progress);
-    void trace_surfaces(const Work& work, uint i);
+    bool trace_surfaces(const Work& work, uint i);
     [[nodiscard]] bool draw_lights(Work& work, uint i, Progress& progress);
     void accumulate(const Work& work, uint i, const std::optional<Pass>& pass);
     void keep_image();
@@ -102,6 +103,7 @@ class Frame {
     Layers layers_;
     LightTree tree_;  // where the sampler uses it
     Standing standing_;
+    bool has_drawn_ = false;  // and so has what to save
     std::shared_ptr<Stages> stages_;
     FrameResult result_;
 };

@@ -126,8 +126,7 @@ Plan make_plan(const DeviceInfo& device, const Scene& scene, const WideBvh& bvh,
             "{}: one tile's contribution matrix needs {}, and {} allows {} at most in a buffer (a "
             "smaller --max-depth or --tile-size needs less)",
             scene.file, mebibytes(need.tile_matrix), device.name, mebibytes(device.max_allocation));
-    // What a sampler learns holds for a batch: as large as may be.
-    std::size_t most = sampler.learns
+    std::size_t most = sampler.large_batches
                            ? tiles.count
                            : std::clamp<std::size_t>(items_per_batch / tile_items, 1, tiles.count);
     most = std::min(most, (budget - fixed) / tile_bytes);

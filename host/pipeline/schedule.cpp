@@ -24,10 +24,11 @@ Schedule::Schedule(const RenderOptions& options, const Plan& plan, std::size_t l
       batches_(plan.batches),
       tiles_per_batch_(plan.tiles_per_batch),
       lights_(static_cast<uint>(lights)),
-      all_lights_(find_sampler(options.sampler).all_lights) {}
+      sampler_(find_sampler(options.sampler)) {}
 
 uint Schedule::light_samples(uint i) const {
-    return all_lights_ || lights_ == 0 ? lights_ : options_.samples_of(i);
+    if (sampler_.all_lights || lights_ == 0) return lights_;
+    return options_.samples_of(sampler_.own_rays ? 0 : i);
 }
 
 float Schedule::weight(uint i) const {

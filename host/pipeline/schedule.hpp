@@ -7,6 +7,7 @@
 
 #include "output/error_estimate.hpp"
 #include "pipeline/plan.hpp"
+#include "samplers/sampler.hpp"
 #include "stages/gbuffer.hpp"
 
 namespace manylight {
@@ -33,7 +34,8 @@ class Schedule {
     /// `options` live longer. `lights`: that each pixel sample's light samples are of.
     Schedule(const RenderOptions& options, const Plan& plan, std::size_t lights);
 
-    /// Light samples of pixel sample i.
+    /// Light samples of pixel sample i. A sampler to whose rays they hardly matter has as many of
+    /// every pixel sample, so that all count alike.
     [[nodiscard]] uint light_samples(uint i) const;
 
     /// How much pixel sample i counts: by its light samples, and alike where there are no lights.
@@ -69,7 +71,7 @@ class Schedule {
     unsigned batches_;
     unsigned tiles_per_batch_;
     uint lights_;
-    bool all_lights_;  // one light sample of each
+    const Sampler& sampler_;
 };
 
 /// Keeps a visit to its time.

@@ -13,6 +13,7 @@ struct Parameter {
     double value;  // where it is not set
     double least, most;
     std::string_view summary;  // one line for help
+    bool whole = false;        // a number without a fraction
 };
 
 /// Values of a sampler's parameters by their names.

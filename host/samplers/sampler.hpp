@@ -28,13 +28,15 @@ struct SamplerContext {
     ClusterOptions clusters;
     ParameterValues parameters;  // of all that the row has
 
+    /// Of a batch, at most.
+    [[nodiscard]] std::size_t items() const { return std::size_t{tiles} * tile_size * tile_size; }
     [[nodiscard]] double parameter(std::string_view name) const {
         return parameters.find(name)->second;
     }
 };
 
 /// Bytes that a sampler takes on the device, at any one time: all that make(), prepare(), begin()
-/// and draw() allocate. A frame that finds more allocated ends with an error.
+/// and draw() allocate. Tests of frames fail where more is allocated.
 struct Footprint {
     std::size_t fixed = 0;        // rays in work and the like
     std::size_t image = 0;        // tables of the whole image
@@ -52,6 +54,7 @@ struct SamplerLoad {
     const ClusterOptions& clusters;
     const ParameterValues& parameters;  // of all that the row has
 
+    [[nodiscard]] std::size_t tile_items() const { return std::size_t{tile_size} * tile_size; }
     [[nodiscard]] double parameter(std::string_view name) const {
         return parameters.find(name)->second;
     }
@@ -116,12 +119,12 @@ struct Sampler {
     std::string_view summary;  // one line for help
     std::string_view color;    // in plots of many charts, #rrggbb
     bool biased = false;
-    bool all_lights = false;  // light sample i is light i
-    bool own_rays = false;    // takes as many as it needs, whatever the number of light samples
-    bool tree = false;        // needs the light tree
-    bool clusters = false;    // clusters pixels, from surfaces at their centres
-    bool learns = false;      // of a batch as a whole, which is as large as may be
-    unsigned tile_size = 0;   // pixels of a tile's side; 0: as the options say
+    bool all_lights = false;     // light sample i is light i
+    bool own_rays = false;       // takes as many as it needs, whatever the number of light samples
+    bool tree = false;           // needs the light tree
+    bool clusters = false;       // clusters pixels, from surfaces at their centres
+    bool large_batches = false;  // as large as may be: what is made of one is of all its tiles
+    unsigned tile_size = 0;      // pixels of a tile's side; 0: as the options say
     std::size_t most_lights = std::numeric_limits<std::size_t>::max();
     std::vector<Parameter> parameters = {};
     Footprint (*footprint)(const SamplerLoad& load) = nullptr;

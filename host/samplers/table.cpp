@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "error.hpp"
 #include "samplers/rows.hpp"
@@ -57,6 +58,8 @@ ParameterValues values_of(const Sampler& sampler, const ParameterValues& set) {
         if (!(value >= found->least && value <= found->most))
             throw InputError("--set {}={}: it is from {} to {}", name, value, found->least,
                              found->most);
+        if (found->whole && value != std::floor(value))
+            throw InputError("--set {}={}: it is a whole number", name, value);
         values[name] = value;
     }
     return values;

@@ -5,8 +5,8 @@
 
 #include "lib/brdf.h"
 #include "lib/bvh.h"
-#include "lib/camera.h"
 #include "lib/lights.h"
+#include "lib/view.h"
 #include "shared/surface.h"
 
 // A surface point with all that its shading needs.

@@ -4,9 +4,9 @@
 #ifndef MANYLIGHT_LIB_RECEIVERS_N_H
 #define MANYLIGHT_LIB_RECEIVERS_N_H
 
-#include "lib/camera.h"
 #include "lib/cells.h"
 #include "lib/lanes.h"
+#include "lib/view.h"
 
 // Where shadow rays start, normals of the horizons, and 1 where stage reflections takes part.
 typedef struct Origins_n {
@@ -102,7 +102,16 @@ INLINE Receivers_n load_receivers_n(Tiles tiles, Pass pass, uint group, View vie
     r.points.green = select(zero, r.points.green, r.valid);
     r.points.blue = select(zero, r.points.blue, r.valid);
 #if HAS_OUTGOING
+    // Those of items without a surface may be anything.
     load_outgoing_n(view, items, &r.points);
+    r.points.through_red = select(zero, r.points.through_red, r.valid);
+    r.points.through_green = select(zero, r.points.through_green, r.valid);
+    r.points.through_blue = select(zero, r.points.through_blue, r.valid);
+#if HAS_GGX
+    r.points.vx = select(one, r.points.vx, r.valid);
+    r.points.vy = select(one, r.points.vy, r.valid);
+    r.points.vz = select(one, r.points.vz, r.valid);
+#endif
 #endif
 #if HAS_GGX
     Points_n* p = &r.points;

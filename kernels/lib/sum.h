@@ -14,4 +14,12 @@ static void add_compensated(float4* sum, float4* residual, float4 term) {
     *sum = next;
 }
 
+// The same of single numbers.
+static void add_compensated_1(float* sum, float* residual, float term) {
+    const float corrected = term - *residual;
+    const float next = *sum + corrected;
+    *residual = (next - *sum) - corrected;
+    *sum = next;
+}
+
 #endif

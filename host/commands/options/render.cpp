@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <sstream>
 
 #include "commands/options/commands.hpp"
 #include "commands/options/scene.hpp"
@@ -24,8 +25,23 @@ std::string whole_spp(const std::string& spp) {
     return fmt::format("{:.0f}", std::max(std::ceil(std::strtod(spp.c_str(), nullptr)), 1.0));
 }
 
+// Gives the parameters of its sampler that an image's header tells, and the command line does not,
+// their values.
+void repeat_parameters(std::map<std::string, std::string>& facts, const std::string& sampler,
+                       RenderArguments& a) {
+    const auto set = facts.find("set");
+    if (set == facts.end()) return;
+    if (sampler == facts["sampler"]) {
+        std::istringstream texts(set->second);
+        for (std::string text; std::getline(texts, text, ',');)
+            a.options.parameters.insert(parse_parameter(text));
+    }
+    facts.erase(set);
+}
+
 // Gives all options that an image's header tells, and the command line does not, their values.
-void repeat(CLI::App& command, const std::string& image) {
+void repeat(CLI::App& command, RenderArguments& a) {
+    const std::string& image = a.like;
     std::map<std::string, std::string> facts = read_facts(image);
     if (!facts.contains("file") || !facts.contains("sampler"))
         throw InputError("--like {}: its header tells of no render of manylight's", image);
@@ -39,7 +55,7 @@ void repeat(CLI::App& command, const std::string& image) {
     else if (facts["cut_short"] == "true")
         warn("--like {}: was cut short at {} spp; {} are rendered", image, facts["spp"],
              whole_spp(facts["spp"]));
-    if (command.count("--sampler") > 0) facts.erase("set");  // another sampler's
+    repeat_parameters(facts, command.count("--sampler") > 0 ? a.sampler : facts["sampler"], a);
     if (facts.contains("spp")) facts["spp"] = whole_spp(facts["spp"]);
     for (CLI::Option* option : command.get_options()) {
         const std::string name =
@@ -153,7 +169,7 @@ void add_outputs(CLI::App& command, RenderArguments& a) {
 // --spp.
 void complete(CLI::App& command, RenderArguments& a) {
     a.repeats_aovs = command.count("--aov") == 0;
-    if (!a.like.empty()) repeat(command, a.like);
+    if (!a.like.empty()) repeat(command, a);
     require_scene(command, a.scene);
     if (a.sampler != "auto") (void)find_sampler(a.sampler);
     RenderOptions& o = a.options;

@@ -27,7 +27,7 @@ class ByContribution : public OneLight {
 
     [[nodiscard]] static Footprint footprint(const SamplerLoad& load);
 
-    /// The last batch's; none without lights.
+    /// The last batch's.
     [[nodiscard]] const Clustering& clustering() const { return clustering_; }
 
   private:

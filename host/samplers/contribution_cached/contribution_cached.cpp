@@ -35,8 +35,9 @@ Sampler sampler_contribution_cached() {
             .summary = "contribution-defensive from the rows of the nearest clusters, too",
             .color = "#bcbd22",
             .clusters = true,
-            .learns = true,  // clusters of neighbouring tiles
-            .parameters = {{"rows", 4, 1, MOST_NEIGHBOURS + 1, "clusters that a pixel draws from"},
+            .large_batches = true,  // clusters of neighbouring tiles
+            .parameters = {{"rows", 4, 1, MOST_NEIGHBOURS + 1, "clusters that a pixel draws from",
+                            true},
                            {"angle", 30, 0, 180, "between their normals at most, degrees"}},
             .footprint = ContributionCached::footprint,
             .make = [](const SamplerContext& context) -> std::unique_ptr<LightSampler> {

@@ -8,10 +8,6 @@
 namespace manylight {
 namespace {
 
-std::size_t items_of(unsigned tiles, unsigned tile_size) {
-    return std::size_t{tiles} * tile_size * tile_size;
-}
-
 // The default is what Walter et al. ("Lightcuts", 2005) take, below what the eye sees of a step.
 std::vector<Parameter> parameters() {
     return {{.name = "epsilon",
@@ -34,12 +30,12 @@ Octree::Octree(const SamplerContext& context, bool to_virtual)
       to_virtual_(to_virtual),
       nodes_(build_octree(context.lights)),
       scene_(context.scene.arguments),
-      shadows_(context.device, context.scene, items_of(context.tiles, context.tile_size)),
+      shadows_(context.device, context.scene, context.items()),
       draw_(context.device.kernel("samplers/octree/octree.cl", "octree_draw", context.scene.shading,
                                   "samples")),
       add_(context.device.kernel("samples.cl", "samples_add", context.scene.traversal, "samples")),
       device_nodes_(context.device.upload(nodes_)),
-      next_nodes_(context.device.allocate<uint>(items_of(context.tiles, context.tile_size))),
+      next_nodes_(context.device.allocate<uint>(context.items())),
       totals_(context.device.allocate<float4>(next_nodes_.size())),
       values_(context.device.allocate<float>(48 * next_nodes_.size())) {}
 
@@ -86,7 +82,7 @@ double Octree::share_done(std::size_t items) const {
 
 Footprint Octree::footprint(const SamplerLoad& load) {
     Footprint out;
-    const std::size_t items = items_of(1, load.tile_size);
+    const std::size_t items = load.tile_items();
     out.image = 2 * sizeof(OctreeNode) * load.lights;
     out.tile = items * (SampleStage::item_bytes() + sizeof(uint) + sizeof(float4));
     out.tile_buffer = items * 64 * sizeof(float);  // rays

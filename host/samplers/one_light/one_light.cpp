@@ -4,8 +4,7 @@
 namespace manylight {
 
 OneLight::OneLight(const SamplerContext& context, std::string_view file)
-    : stage_(context.device, context.scene, file,
-             std::size_t{context.tiles} * context.tile_size * context.tile_size) {}
+    : stage_(context.device, context.scene, file, context.items()) {}
 
 bool OneLight::draw(const Tiles& tiles, const PixelSample& sample, uint light_samples,
                     const Buffer<Surface>& surfaces, Estimates& estimates, const Sink& sink) {
@@ -15,9 +14,8 @@ bool OneLight::draw(const Tiles& tiles, const PixelSample& sample, uint light_sa
 
 Footprint OneLight::footprint(const SamplerLoad& load) {
     Footprint out;
-    const std::size_t items = std::size_t{load.tile_size} * load.tile_size;
-    out.tile = items * SampleStage::item_bytes();
-    out.tile_buffer = items * 64 * sizeof(float);  // rays
+    out.tile = load.tile_items() * SampleStage::item_bytes();
+    out.tile_buffer = load.tile_items() * 64 * sizeof(float);  // rays
     return out;
 }
 

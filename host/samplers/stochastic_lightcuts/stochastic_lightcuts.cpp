@@ -12,15 +12,16 @@ StochasticLightcuts::StochasticLightcuts(const SamplerContext& context)
 }
 
 Sampler sampler_stochastic_lightcuts() {
-    return {.name = "stochastic-lightcuts",
-            .summary = "a light of each node of a cut of the light tree, chosen by bounds (Yuksel)",
-            .color = "#17becf",
-            .tree = true,
-            .parameters = {{"cut", MOST_CUT_NODES, 1, MOST_CUT_NODES, "nodes of a cut, at most"}},
-            .footprint = OneLight::footprint,
-            .make = [](const SamplerContext& context) -> std::unique_ptr<LightSampler> {
-                return std::make_unique<StochasticLightcuts>(context);
-            }};
+    return {
+        .name = "stochastic-lightcuts",
+        .summary = "a light of each node of a cut of the light tree, chosen by bounds (Yuksel)",
+        .color = "#17becf",
+        .tree = true,
+        .parameters = {{"cut", MOST_CUT_NODES, 1, MOST_CUT_NODES, "nodes of a cut, at most", true}},
+        .footprint = OneLight::footprint,
+        .make = [](const SamplerContext& context) -> std::unique_ptr<LightSampler> {
+            return std::make_unique<StochasticLightcuts>(context);
+        }};
 }
 
 }  // namespace manylight

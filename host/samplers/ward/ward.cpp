@@ -19,7 +19,7 @@ constexpr std::size_t fewest_slots = 64;
 constexpr std::size_t entry_bytes = sizeof(float4) + 2 * sizeof(uint);
 
 std::size_t slots_for(std::size_t items, std::size_t lights) {
-    const std::size_t fit = slice_bytes / (entry_bytes * std::max<std::size_t>(lights, 1));
+    const std::size_t fit = slice_bytes / (entry_bytes * lights);
     return std::min(items, std::max(fit, fewest_slots));
 }
 
@@ -28,26 +28,20 @@ std::size_t slot_bytes(std::size_t lights) {
            STEP_PACKETS * ShadowStage::packet_bytes();
 }
 
-std::size_t items_of(const SamplerContext& context) {
-    return std::size_t{context.tiles} * context.tile_size * context.tile_size;
-}
-
 }  // namespace
 
 Ward::Ward(const SamplerContext& context)
     : scene_(context.scene.arguments),
       light_count_(context.scene.light_count),
-      slots_(slots_for(items_of(context), light_count_)),
+      slots_(slots_for(context.items(), light_count_)),
       tau_(context.parameter("tau")),
       certainty_(context.parameter("certainty")),
       shadows_(context.device, context.scene, slots_ * STEP_PACKETS),
       probe_(context.device.kernel("samplers/ward/histories.cl", "ward_probe",
                                    context.scene.shading, "histories")),
-      histories_(context.device.allocate<uint>(
-          std::max<std::size_t>(std::size_t{context.tiles} * light_count_, 1))),
-      contributions_(
-          context.device.allocate<float4>(std::max<std::size_t>(slots_ * light_count_, 1))),
-      order_(context.device.allocate<uint>(std::max<std::size_t>(2 * slots_ * light_count_, 1))),
+      histories_(context.device.allocate<uint>(std::size_t{context.tiles} * light_count_)),
+      contributions_(context.device.allocate<float4>(slots_ * light_count_)),
+      order_(context.device.allocate<uint>(2 * slots_ * light_count_)),
       walks_(context.device.allocate<float4>(slots_)),
       counts_(context.device.allocate<uint>(4 * slots_)) {
     const auto kernel = [&](const char* name) {
@@ -60,7 +54,7 @@ Ward::Ward(const SamplerContext& context)
 }
 
 std::size_t Ward::slots_of(const SamplerLoad& load) {
-    return slots_for(load.tiles * load.tile_size * load.tile_size, load.lights);
+    return slots_for(load.tiles * load.tile_items(), load.lights);
 }
 
 Footprint Ward::footprint(const SamplerLoad& load) {

@@ -4,16 +4,11 @@
 // Illumination", 2012).
 #include "lib/direct.h"
 #include "lib/draw.h"
-#include "shared/contribution_cached.h"
+#include "samplers/contribution_cached/nearest.h"
 
-// Rows of the matrix that a pixel draws from, its own first.
-typedef struct Rows {
-    uint count;
-    uint rows[MOST_NEIGHBOURS + 1];
-} Rows;
-
+// The pixel's state are the rows that it draws from, its own first.
 // cdf[item_rows[item] * light_count + light]; neighbours, places: see neighbours.cl
-#define PIXEL_STATE Rows
+#define PIXEL_STATE Nearest
 #define SAMPLER_PARAMETERS                                                                       \
     , __global const uint *cdf, __global const uint *item_rows, __global const uint *neighbours, \
         __global const float4 *places, uint most_rows
@@ -33,33 +28,16 @@ static float probability_in(__global const uint* cdf, uint row, uint light_count
 static void begin_pixel(const Receiver* receiver, __global const Light* lights, Draw first,
                         __global const uint* cdf, __global const uint* item_rows,
                         __global const uint* neighbours, __global const float4* places,
-                        uint most_rows, Rows* rows) {
+                        uint most_rows, Nearest* rows) {
     const uint own = item_rows[first.item];
-    float distances2[MOST_NEIGHBOURS + 1];
     rows->count = 0u;
-    if (row_total(cdf, own, first.light_count) > 0u) {
-        rows->rows[0] = own;
-        distances2[0] = 0.0f;
-        rows->count = 1u;
-    }
+    if (row_total(cdf, own, first.light_count) > 0u) add_row(rows, most_rows, own, 0.0f);
     for (uint k = 0u; k < MOST_NEIGHBOURS; ++k) {
         const uint row = neighbours[MOST_NEIGHBOURS * (ulong)own + k];
         if (row == NO_ROW) break;
         if (row_total(cdf, row, first.light_count) == 0u) continue;
         const float3 apart = places[row].xyz - receiver->position;
-        const float distance2 = dot(apart, apart);
-        uint at = rows->count;
-        if (at == most_rows) {
-            if (distance2 >= distances2[--at]) continue;
-        } else {
-            ++rows->count;
-        }
-        for (; at > 0u && distance2 < distances2[at - 1u]; --at) {
-            rows->rows[at] = rows->rows[at - 1u];
-            distances2[at] = distances2[at - 1u];
-        }
-        rows->rows[at] = row;
-        distances2[at] = distance2;
+        add_row(rows, most_rows, row, dot(apart, apart));
     }
 }
 
@@ -68,7 +46,7 @@ static void begin_pixel(const Receiver* receiver, __global const Light* lights, 
 static Choice choose_light(const Receiver* receiver, __global const Light* lights, Draw draw,
                            __global const uint* cdf, __global const uint* item_rows,
                            __global const uint* neighbours, __global const float4* places,
-                           uint most_rows, const Rows* rows) {
+                           uint most_rows, const Nearest* rows) {
     Choice choice = {0u, 0.0f};
     if (rows->count == 0u) return choice;
     const uint others = rows->count - 1u;

@@ -2,29 +2,8 @@
 // Stage neighbours of sampler contribution-cached: which clusters are near a cluster.
 #include "lib/common.h"
 #include "lib/tiles.h"
-#include "shared/contribution_cached.h"
+#include "samplers/contribution_cached/nearest.h"
 #include "shared/surface.h"
-
-// The nearest so far.
-typedef struct Nearest {
-    uint count;
-    uint rows[MOST_NEIGHBOURS];
-    float distances2[MOST_NEIGHBOURS];  // ascending
-} Nearest;
-
-static void add(Nearest* nearest, uint row, float distance2) {
-    if (nearest->count == MOST_NEIGHBOURS) {
-        if (distance2 >= nearest->distances2[MOST_NEIGHBOURS - 1]) return;
-        --nearest->count;
-    }
-    uint at = nearest->count++;
-    for (; at > 0u && distance2 < nearest->distances2[at - 1u]; --at) {
-        nearest->rows[at] = nearest->rows[at - 1u];
-        nearest->distances2[at] = nearest->distances2[at - 1u];
-    }
-    nearest->rows[at] = row;
-    nearest->distances2[at] = distance2;
-}
 
 // neighbours[MOST_NEIGHBOURS * row + i]: the clusters in a cluster's tile and the eight about it,
 // as far as they are in the batch, that have a representative of a similar normal, nearest first by
@@ -58,7 +37,7 @@ KERNEL void neighbours_find(Tiles tiles, __global const Region* regions,
                     __global const Surface* s = surfaces + representatives[other];
                     if (dot(normal, s->normal.xyz) < least_cosine) continue;
                     const float3 apart = s->position.xyz - position;
-                    add(&nearest, other, dot(apart, apart));
+                    add_row(&nearest, MOST_NEIGHBOURS, other, dot(apart, apart));
                 }
             }
     }

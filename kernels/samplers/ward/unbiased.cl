@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Sampler ward-unbiased: light samples of the lights that the walk left untested, which correct
 // what kernel ward_tail added for them. For them their expected visibility is a control variate.
+#include "lib/values.h"
 #include "samplers/ward/walk.h"
 
 // What a light of the tail is drawn in proportion to.
@@ -32,24 +33,24 @@ KERNEL void ward_draw_tail(Tiles tiles, VIEW_PARAMETERS, __global const Surface*
         const uint number = pixel.y * tiles.width + pixel.x;
         const float4 walk = walks[slot];
         float4 sum = estimates[item], residual = residuals[item];
-        float4 total = (float4)(0.0f), total_residual = (float4)(0.0f);
+        float total = 0.0f, total_residual = 0.0f;
         for (uint light = 0u; light < light_count; ++light)
             if (own[light].w > 0.0f)
-                add_compensated(&total, &total_residual,
-                                (float4)(tail_weight(
-                                    own[light], expected_visibility(walk, own_histories[light]))));
-        const float step = total.x / (float)draw_count;
+                add_compensated_1(
+                    &total, &total_residual,
+                    tail_weight(own[light], expected_visibility(walk, own_histories[light])));
+        const float step = total / (float)draw_count;
         const float shift = unit_float(random_bits(number, pixel_sample, RANDOM_TAIL, seed).x);
-        float4 passed = (float4)(0.0f), passed_residual = (float4)(0.0f);
+        float passed = 0.0f, passed_residual = 0.0f;
         uint draw = first_draw;
         for (uint light = 0u; light < light_count && draw < end_draw; ++light) {
             const float4 contribution = own[light];
             if (!(contribution.w > 0.0f)) continue;
             const float visible = expected_visibility(walk, own_histories[light]);
             const float weight = tail_weight(contribution, visible);
-            add_compensated(&passed, &passed_residual, (float4)(weight));
+            add_compensated_1(&passed, &passed_residual, weight);
             uint times = 0u;
-            for (; draw < end_draw && ((float)draw + shift) * step < passed.x; ++draw) ++times;
+            for (; draw < end_draw && ((float)draw + shift) * step < passed; ++draw) ++times;
             if (times == 0u) continue;
             const float3 value = contribution.xyz * ((float)times * step / weight);
             add_compensated(&sum, &residual, (float4)(-visible * value, 0.0f));
@@ -78,15 +79,7 @@ KERNEL void ward_add_tail(uint first_item, uint slots, __global const float* ray
     if (slot >= slots) return;
     const uint item = first_item + slot;
     float4 sum = estimates[item], residual = residuals[item];
-    __global const float* lanes = values + 48 * (ulong)slot;
-    for (uint lane = 0u; lane < 16u; ++lane) {
-        const float end = RAY_END(rays, slot, lane);
-        if (end == 0.0f) break;
-        const float3 value = end > 0.0f
-                                 ? (float3)(lanes[lane], lanes[lane + 16u], lanes[lane + 32u])
-                                 : (float3)(0.0f);
-        add_compensated(&sum, &residual, (float4)(value, 1.0f));
-    }
+    add_values(rays, values, slot, &sum, &residual);
     estimates[item] = sum;
     residuals[item] = residual;
 }

@@ -3,12 +3,10 @@
 //
 // They work on a slice of a batch: slot i is item first_item + i. Buffers over slots and lights:
 //   contributions[slot * light_count + light]: rgb, cd/m2, of the light (of its point) where
-//   nothing
-//     is in its way; w, its luminance, 0 once the light is tested;
+//     nothing is in its way; w, its luminance, 0 once the light is tested;
 //   order[slot * light_count + i]: entries of lights with a contribution, those in front a heap
-//   whose
-//     first is the largest, those behind in descending order from the end: the walk takes them in
-//     turn.
+//     whose first is the largest, those behind in descending order from the end: the walk takes
+//     them in turn.
 // Buffers over slots:
 //   walks[slot]: the sum that the stopping rule looks at, its residual (lib/sum.h); of the lights
 //     tested, how many were expected to be visible, and how many are;

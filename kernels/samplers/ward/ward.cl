@@ -26,12 +26,11 @@ static float pop(__global ulong* order, uint size) {
     return entry_size(entry);
 }
 
-// Adds to a walk's sum, compensated.
+// Adds to a walk's sum.
 static void add_to_rest(float4* walk, float term) {
-    const float corrected = term - walk->y;
-    const float next = walk->x + corrected;
-    walk->y = (next - walk->x) - corrected;
-    walk->x = next;
+    float sum = walk->x, residual = walk->y;
+    add_compensated_1(&sum, &residual, term);
+    walk->xy = (float2)(sum, residual);
 }
 
 // Evaluates all lights at a pixel sample, and puts them in a heap. The rule's sum starts as that of

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Where the light of receivers goes: to the camera, or along outgoing[item] with a throughput.
-#ifndef MANYLIGHT_LIB_CAMERA_H
-#define MANYLIGHT_LIB_CAMERA_H
+#ifndef MANYLIGHT_LIB_VIEW_H
+#define MANYLIGHT_LIB_VIEW_H
 
 #include "lib/common.h"
 #include "shared/camera.h"
