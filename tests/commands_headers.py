@@ -145,6 +145,17 @@ class HeaderTest(CommandTest):
             self.assertEqual(after["pixels"], before["pixels"])
             self.assertEqual(after["set"], before["set"])
             self.assertIn(f"{p['name']}={value:g}", after["set"])
+            # What the command line names goes before; the others, and the same sampler, stay.
+            other = row["parameters"][-1]
+            self.run_program("render", "--like", "a.exr", "--sampler", row["name"], "--set",
+                             f"{other['name']}={other['least']}", "-o", "b.exr", "-q")
+            told = self.headers("b.exr")[0]["set"]
+            self.assertIn(f"{other['name']}={other['least']:g}", told)
+            if other is not p:
+                self.assertIn(f"{p['name']}={value:g}", told)
+            self.run_program("render", "--like", "a.exr", "--sampler", "uniform", "-o", "b.exr",
+                             "-q")
+            self.assertNotIn("set", self.headers("b.exr")[0])
 
     def test_like_says_what_it_cannot_repeat(self):
         self.write_lamp()

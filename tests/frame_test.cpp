@@ -147,6 +147,18 @@ TEST(frame, batches_do_not_change_the_image) {
     }
 }
 
+// Light samples weigh pixel samples, but not of samplers to whose rays they hardly matter.
+TEST(frame, pixel_samples_weigh_what_they_take) {
+    RenderOptions options;
+    for (const Sampler& sampler : all_samplers()) {
+        options.sampler = sampler.name;
+        const Schedule schedule(options, Plan{}, 100);
+        EXPECT_EQ(schedule.weight(3), 1) << sampler.name;
+        EXPECT_EQ(schedule.weight(4), sampler.own_rays || sampler.all_lights ? 1 : 4)
+            << sampler.name;
+    }
+}
+
 TEST(frame, too_little_memory_is_refused) {
     const test::TestScene& scene = test::scene_named("many");
     RenderOptions options = small_options("contribution");

@@ -190,32 +190,62 @@ TEST(ward, untested_lights_follow_their_histories) {
     }
 }
 
-// A render that is resumed does not probe again, from another pixel sample's surfaces.
-TEST(ward, resumed_renders_keep_their_histories) {
-    const Device& device = test::devices().front();
-    const test::TestScene& scene = test::scene_named("many");
-    const unsigned lanes = device.form().bvh_width;
-    const WideBvh bvh =
-        build_wide_bvh(scene.scene, lanes, lanes, reach_of(scene.scene, scene.camera));
-    RenderOptions options = options_for("ward", 0.5);
-    options.pixel_centre = false;
-    options.width = scene.width;
-    options.height = scene.height;
-    FrameState state;
-    const Saving saving{.save = [&](const FrameState& saved) { state = saved; }};
-    const auto render = [&](uint spp, const FrameState* from) {
-        options.spp = spp;
-        Frame frame(device, scene.scene, bvh, scene.camera, options);
+// Renders that go on with each other.
+struct Session {
+    const Device& device;
+    const test::TestScene& scene;
+    WideBvh bvh = build_wide_bvh(scene.scene, device.form().bvh_width, device.form().bvh_width,
+                                 reach_of(scene.scene, scene.camera));
+    FrameState state = {};  // that was saved last
+
+    [[nodiscard]] RenderOptions sized(RenderOptions options) const {
+        options.width = scene.width;
+        options.height = scene.height;
+        return options;
+    }
+    [[nodiscard]] Frame frame(const RenderOptions& options) const {
+        return {device, scene.scene, bvh, scene.camera, options};
+    }
+    FrameResult render(const RenderOptions& options, const FrameState* from = nullptr) {
+        Frame frame = this->frame(options);
         frame.prepare();
         Progress quiet("", true);
-        return frame.render(quiet, saving, from);
-    };
-    (void)render(2, nullptr);
-    const FrameState half = state;
-    const FrameResult resumed = render(4, &half);
-    const FrameResult whole = render(4, nullptr);
+        return frame.render(quiet, {.save = [&](const FrameState& saved) { state = saved; }}, from);
+    }
+};
+
+// A render that is resumed does not probe again, from another pixel sample's surfaces.
+TEST(ward, resumed_renders_keep_their_histories) {
+    Session session{test::devices().front(), test::scene_named("many")};
+    RenderOptions options = session.sized(options_for("ward", 0.5));
+    options.pixel_centre = false;
+    options.spp = 2;
+    (void)session.render(options);
+    const FrameState half = session.state;
+    options.spp = 4;
+    const FrameResult resumed = session.render(options, &half);
+    const FrameResult whole = session.render(options);
     EXPECT_EQ(resumed.image.values, whole.image.values);
     EXPECT_EQ(resumed.shadow_rays, whole.shadow_rays);
+}
+
+// Batches that are visited in rounds are begun with the same surfaces as an image of one batch.
+TEST(ward, histories_do_not_depend_on_batches) {
+    Session session{test::devices().front(), test::scene_named("points")};
+    for (const std::string_view sampler : {"ward", "ward-unbiased"}) {
+        RenderOptions options = session.sized(options_for(sampler, 0.5));
+        options.pixel_centre = false;
+        options.target_error = 1e-9;
+        options.clusters.tile_size = 8;
+        options.spp = 256;
+        options.spp = Schedule(options, Plan{}, 1).first_round(0).end + 2;  // a second round
+        const FrameResult whole = session.render(options);
+        options.memory = session.frame(options).plan().total_bytes() - 1;
+        ASSERT_EQ(session.frame(options).plan().batches, 2u);
+        const FrameResult parts = session.render(options);
+        EXPECT_EQ(whole.spp, parts.spp);
+        EXPECT_EQ(whole.image.values, parts.image.values);
+    }
 }
 
 // Where histories are wrong, at the edge of a shadow in a tile, and few lights are tested: the
