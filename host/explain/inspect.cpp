@@ -209,7 +209,7 @@ PixelReport inspect_pixel(const Scene& plain, const LightTree& tree, const Camer
         truth.add_node(choice.node, 1, sum);
         const double visible = group.pixels[group.own].visible[choice.slot];
         const double contribution = reference::luminance(sum.value);
-        const double expected = CONTROL * visible * choice.estimate;
+        const double expected = CONTROL * reference::known_visibility(visible) * choice.estimate;
         shares.push_back(choice.share);
         values.push_back(choice.share > 0 ? (contribution - expected) / choice.share : 0);
         within.push_back(choice.share > 0

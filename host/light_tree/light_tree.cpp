@@ -219,9 +219,10 @@ class Builder {
             ++task_depth_;
     }
 
-    // Appends the tree of these lights.
-    void build(std::vector<Reference> references) {
+    // Appends the tree of these lights, of which the first `seen` are on the left.
+    void build(std::vector<Reference> references, std::size_t seen) {
         if (references.empty()) return;
+        first_split_ = seen > 0 && seen < references.size() ? seen : 0;
         const std::size_t root = tree_.nodes.size();
         first_light_ = tree_.lights.size();
         references_ = std::move(references);
@@ -241,7 +242,8 @@ class Builder {
             tree_.nodes[index] = leaf_of(tree_.lights[place], static_cast<uint>(place));
             return;
         }
-        const std::size_t middle = split(begin, end, depth);
+        const std::size_t middle =
+            depth == 0 && first_split_ > 0 ? first_split_ : split(begin, end, depth);
         const std::size_t left = index + 1;
         const std::size_t right = index + 2 * (middle - begin);
         const auto build_right = [&] { build_node(right, middle, end, depth + 1); };
@@ -344,12 +346,13 @@ class Builder {
     LightTree& tree_;
     std::vector<Reference> references_;
     std::size_t first_light_ = 0;
+    std::size_t first_split_ = 0;
     int task_depth_ = 0;
 };
 
 }  // namespace
 
-LightTree build_light_tree(const std::vector<Light>& lights) {
+LightTree build_light_tree(const std::vector<Light>& lights, const std::vector<bool>& seen) {
     std::vector<Reference> directional;
     std::vector<Reference> finite;
     for (std::size_t i = 0; i < lights.size(); ++i) {
@@ -361,8 +364,13 @@ LightTree build_light_tree(const std::vector<Light>& lights) {
     }
     LightTree tree;
     Builder builder(lights, tree);
-    builder.build(std::move(directional));
-    builder.build(std::move(finite));
+    for (std::vector<Reference>* references : {&directional, &finite}) {
+        const auto hidden = std::stable_partition(
+            references->begin(), references->end(),
+            [&](const Reference& r) { return !seen.empty() && seen[r.light]; });
+        const auto count = static_cast<std::size_t>(hidden - references->begin());
+        builder.build(std::move(*references), count);
+    }
     return tree;
 }
 

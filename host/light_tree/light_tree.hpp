@@ -21,7 +21,9 @@ struct LightTree {
 /// orientation heuristic of Conty Estevez and Kulla, "Importance Sampling of Many Lights with
 /// Adaptive Tree Splitting" (2018), whose cone is replaced by the length of the mean axis: sums
 /// are fast. Lights at one place are split by their axes. The result does not depend on the number
-/// of threads.
-[[nodiscard]] LightTree build_light_tree(const std::vector<Light>& lights);
+/// of threads. `seen`, where it is given, says which lights anything is seen by: they are on the
+/// left of a root, the others on its right.
+[[nodiscard]] LightTree build_light_tree(const std::vector<Light>& lights,
+                                         const std::vector<bool>& seen = {});
 
 }  // namespace manylight

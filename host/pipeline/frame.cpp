@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <optional>
 
+#include "shared/adaptive.h"
 #include "stages/reflections.hpp"
+#include "stages/seen_lights.hpp"
 
 namespace manylight {
 namespace {
@@ -81,10 +83,6 @@ Frame::Frame(const Device& device, const Scene& scene, const WideBvh& bvh, const
       layers_(scene, options_, plan_) {}
 
 void Frame::prepare() {
-    if (sampler_.tree) {
-        Stopwatch watch(result_.prepare_seconds, device_);
-        tree_ = build_light_tree(scene_.lights);
-    }
     DeviceScene uploaded = upload();
     {
         const Counting counting(device_, memory_.image.use);
@@ -95,14 +93,37 @@ void Frame::prepare() {
     Stages& s = *stages_;
     if (s.scene.shading.at("HAS_REFLECTIONS") != 0) s.reflections.emplace(device_, s.scene);
     allocate_pixels();
+    std::optional<SeenLightsStage> look;
+    if (look_rays() > 0) look.emplace(device_, s.scene);
     if (!scene_.lights.empty()) make_sampler();
     device_.compile();
+    if (sampler_.tree && s.sampler) {
+        Stopwatch watch(result_.prepare_seconds, device_);
+        plant_tree(look);
+    }
     if (s.sampler) {
         Stopwatch watch(result_.prepare_seconds, device_);
         const Counting counting(device_, memory_.sampler.use);
         s.sampler->prepare();
         device_.finish();
     }
+}
+
+// Shadow rays to each light that tell seen lights from others, or 0.
+uint Frame::look_rays() const {
+    if (!sampler_.looks || scene_.lights.size() <= CUT_CAPACITY) return 0;
+    return SeenLightsStage::rays_per_light(scene_.lights.size(),
+                                           std::size_t{options_.width} * options_.height);
+}
+
+void Frame::plant_tree(std::optional<SeenLightsStage>& look) {
+    std::vector<bool> seen;
+    if (look) {
+        const Counting counting(device_, memory_.sampler.use);
+        seen = look->find(look_rays(), options_.seed);
+    }
+    tree_ = build_light_tree(scene_.lights, seen);
+    fill_tree(tree_, stages_->scene);
 }
 
 // Items of a batch.
@@ -112,9 +133,9 @@ std::size_t Frame::items() const {
 
 DeviceScene Frame::upload() {
     const Counting counting(device_, memory_.scene.use);
-    DeviceScene uploaded =
-        upload_scene(device_, scene_, bvh_, camera_, sampler_.tree ? &tree_ : nullptr,
-                     has_two_surfaces() ? 2 * items() : items());
+    DeviceScene uploaded = upload_scene(device_, scene_, bvh_, camera_, nullptr,
+                                        has_two_surfaces() ? 2 * items() : items());
+    if (sampler_.tree && !scene_.lights.empty()) reserve_tree(device_, scene_.lights, uploaded);
     if (options_.hide_emitters) uploaded.emission["HAS_EMISSION"] = 0;
     if (!options_.reflections) uploaded.shading["HAS_REFLECTIONS"] = 0;
     return uploaded;

@@ -16,6 +16,7 @@
 #include "pipeline/schedule.hpp"
 #include "samplers/table.hpp"
 #include "scene/scene.hpp"
+#include "stages/seen_lights.hpp"
 
 namespace manylight {
 
@@ -77,6 +78,8 @@ class Frame {
     [[nodiscard]] static bool is_counted(const Work& work);
     [[nodiscard]] bool has_two_surfaces() const { return plan_.centres && options_.jitters(); }
     [[nodiscard]] DeviceScene upload();
+    [[nodiscard]] uint look_rays() const;
+    void plant_tree(std::optional<SeenLightsStage>& look);
     void allocate_pixels();
     void make_sampler();
     void render_round(const Round& round, Progress& progress);

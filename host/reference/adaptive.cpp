@@ -28,12 +28,18 @@ struct Drawer {
                          : glm::dvec3(0);
     }
 
-    [[nodiscard]] double weight(const Entry& e, const DrawnPixel& p) const {
+    // `hidden` scales what is believed hidden.
+    [[nodiscard]] double weight(const Entry& e, const DrawnPixel& p, double hidden) const {
         // Its mean is the contribution x V^, of which a part is the control variate's.
         const double v = p.visible[e.slot];
         const double variance = tree.nodes[e.node].count > 1 ? double{GROUP_VARIANCE} : 0;
-        const double known = CONTROL * (2 - double{CONTROL});
-        return luminance(estimate(e, p)) * std::sqrt(v * (1 + variance - known * v));
+        const double known = CONTROL * (2 - double{CONTROL}) * known_visibility(v);
+        return luminance(estimate(e, p)) * std::sqrt(v * (1 + variance - known)) *
+               (is_hidden(e, p) ? hidden : 1);
+    }
+
+    [[nodiscard]] static bool is_hidden(const Entry& e, const DrawnPixel& p) {
+        return p.visible[e.slot] < double{HIDDEN_VISIBILITY};
     }
 
     // How near a node is to a pixel, for its size: 1 within it.
@@ -44,15 +50,33 @@ struct Drawer {
     }
 };
 
-// The cut, in which what is close to any of the pixels is replaced by its children.
-std::vector<Entry> refine(const Drawer& drawer, std::span<const uint> cut,
-                          std::span<const DrawnPixel> pixels, bool& uncertain) {
-    const LightTree& tree = drawer.tree;
+std::vector<Entry> entries_of(std::span<const uint> cut) {
     std::vector<Entry> list;
     for (uint slot = 0; slot < cut.size(); ++slot) list.push_back({slot, cut[slot]});
+    return list;
+}
+
+// What the weights of nodes that are believed hidden are scaled by, so that they are no more than
+// their share of all weights of the cut.
+double hidden_scale(const Drawer& drawer, std::span<const uint> cut, const DrawnPixel& pixel) {
+    double seen = 0;
+    double hidden = 0;
+    for (const Entry& e : entries_of(cut))
+        (Drawer::is_hidden(e, pixel) ? hidden : seen) += drawer.weight(e, pixel, 1);
+    const double most = HIDDEN_SHARE * seen / (1 - double{HIDDEN_SHARE});
+    return most > 0 && hidden > most ? most / hidden : 1;
+}
+
+// The cut, in which what is close to any of the pixels is replaced by its children.
+std::vector<Entry> refine(const Drawer& drawer, std::span<const uint> cut,
+                          std::span<const DrawnPixel> pixels, std::span<const double> scales,
+                          bool& uncertain) {
+    const LightTree& tree = drawer.tree;
+    std::vector<Entry> list = entries_of(cut);
     std::vector<double> sums(pixels.size(), 0);
     for (const Entry& e : list)
-        for (std::size_t i = 0; i < pixels.size(); ++i) sums[i] += drawer.weight(e, pixels[i]);
+        for (std::size_t i = 0; i < pixels.size(); ++i)
+            sums[i] += drawer.weight(e, pixels[i], scales[i]);
     int splits = 0;
     for (std::size_t at = 0; at < list.size();) {
         const Entry e = list[at];
@@ -62,7 +86,7 @@ std::vector<Entry> refine(const Drawer& drawer, std::span<const uint> cut,
             if (!pixels[i].surface) continue;
             const double limit = sums[i] * double{REFINED_SHARE} / drawer.budget.samples;
             const double size =
-                drawer.weight(e, pixels[i]) * drawer.nearness(node, *pixels[i].surface);
+                drawer.weight(e, pixels[i], scales[i]) * drawer.nearness(node, *pixels[i].surface);
             wanted = wanted || size > limit;
             if (size > 0 && std::abs(size / limit - 1) < doubtful / 4) uncertain = true;
         }
@@ -113,15 +137,16 @@ double draw_scale(const LightTree& tree, std::span<const Entry> list,
     return scale;
 }
 
-NodeDraws draw_pixel(const Drawer& drawer, std::span<const Entry> list, const DrawnPixel& pixel) {
+NodeDraws draw_pixel(const Drawer& drawer, std::span<const Entry> list, const DrawnPixel& pixel,
+                     double hidden) {
     const LightTree& tree = drawer.tree;
     NodeDraws d;
     std::vector<double> weights;
     double sum = 0;
     double estimates_blur = 0;
     for (const Entry& e : list) {
-        d.control += pixel.visible[e.slot] * drawer.estimate(e, pixel);
-        weights.push_back(drawer.weight(e, pixel));
+        d.control += known_visibility(pixel.visible[e.slot]) * drawer.estimate(e, pixel);
+        weights.push_back(drawer.weight(e, pixel, hidden));
         sum += weights.back();
         estimates_blur +=
             estimate_rounding(tree, e.node, {drawer.scene, pixel.viewer, *pixel.surface});
@@ -168,11 +193,13 @@ std::vector<NodeDraws> draw_nodes(const LightTree& tree, const Scene& scene,
                                   const Budget& budget) {
     const Drawer drawer{tree, scene, budget};
     bool doubt = false;
-    const std::vector<Entry> list = refine(drawer, cut, pixels, doubt);
+    std::vector<double> scales;
+    for (const DrawnPixel& pixel : pixels) scales.push_back(hidden_scale(drawer, cut, pixel));
+    const std::vector<Entry> list = refine(drawer, cut, pixels, scales, doubt);
     std::vector<NodeDraws> out;
-    for (const DrawnPixel& pixel : pixels) {
+    for (std::size_t i = 0; i < pixels.size(); ++i) {
         NodeDraws& d = out.emplace_back();
-        if (pixel.surface) d = draw_pixel(drawer, list, pixel);
+        if (pixels[i].surface) d = draw_pixel(drawer, list, pixels[i], scales[i]);
         d.uncertain = d.uncertain || doubt;
     }
     return out;

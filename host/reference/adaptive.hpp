@@ -27,6 +27,11 @@ struct NodeDraws {
     bool uncertain = false;
 };
 
+/// V^ in the control variate: none of what is believed hidden, of which it would be a guess.
+[[nodiscard]] inline double known_visibility(double visible) {
+    return visible < double{HIDDEN_VISIBILITY} ? 0 : visible;
+}
+
 /// Where in [0, 1) a pixel's systematic draw starts, and what rounds the number of its draws; see
 /// draw_start() in kernels/samplers/adaptive/adaptive.cl.
 struct Starts {

@@ -108,6 +108,28 @@ struct Entry {
     Rays rays;
 };
 
+bool is_hidden(const Entry& e) { return e.rays.passed == 0; }
+
+std::size_t hidden_count(const std::list<Entry>& cut) {
+    return static_cast<std::size_t>(std::ranges::count_if(cut, is_hidden));
+}
+
+// The node that promises most: of those that something is seen of, once half of the cut are others.
+std::list<Entry>::iterator next_split(std::list<Entry>& cut, uint cut_size) {
+    const auto best = [&](bool hidden) {
+        auto found = cut.end();
+        for (auto i = cut.begin(); i != cut.end(); ++i)
+            if (is_hidden(*i) == hidden && i->score > (found == cut.end() ? 0 : found->score))
+                found = i;
+        return found;
+    };
+    const auto seen = best(false);
+    const auto hidden = best(true);
+    if (seen == cut.end()) return hidden;
+    if (hidden == cut.end() || 2 * hidden_count(cut) >= cut_size) return seen;
+    return hidden->score > seen->score ? hidden : seen;
+}
+
 // The roots, of which the node that promises most is split again and again.
 std::list<Entry> split_nodes(Prober& prober, uint cut_size) {
     const LightTree& tree = prober.tree;
@@ -115,12 +137,10 @@ std::list<Entry> split_nodes(Prober& prober, uint cut_size) {
     for (const uint root : tree.roots)
         cut.push_back({root, tree.nodes[root].count > 1 ? 1e300 : 0.0, {}});
     while (cut.size() < cut_size) {
-        auto best = cut.begin();
-        for (auto i = cut.begin(); i != cut.end(); ++i)
-            if (i->score > best->score) best = i;
-        if (best->score <= 0) break;
+        const auto best = next_split(cut, cut_size);
+        if (best == cut.end()) break;
         // Who is split last is a close call where scores are equal.
-        if (cut.size() + 1 == cut_size)
+        if (cut.size() + 1 == cut_size || 2 * (hidden_count(cut) + 1) >= cut_size)
             for (auto i = cut.begin(); i != cut.end(); ++i)
                 if (i != best && i->score > best->score * (1 - doubtful)) prober.uncertain = true;
         const Entry parent = *best;

@@ -122,6 +122,7 @@ struct Sampler {
     bool all_lights = false;     // light sample i is light i
     bool own_rays = false;       // takes as many as it needs, whatever the number of light samples
     bool tree = false;           // needs the light tree
+    bool looks = false;          // its tree tells lights that are seen from others, where it may
     bool clusters = false;       // clusters pixels, from surfaces at their centres
     bool large_batches = false;  // as large as may be: what is made of one is of all its tiles
     unsigned tile_size = 0;      // pixels of a tile's side; 0: as the options say

@@ -10,12 +10,12 @@ namespace {
 void set_lights(Device& device, const std::vector<Light>& lights, const LightTree* tree,
                 DeviceScene& out) {
     out.light_count = static_cast<uint>(lights.size());
-    out.arguments.set("lights", device.upload(tree ? tree->lights : lights))
-        .set("light_count", out.light_count);
-    if (tree)
-        out.arguments.set("nodes", device.upload(tree->nodes))
-            .set("root_count", static_cast<uint>(tree->roots.size()))
-            .set("second_root", tree->roots.size() > 1 ? tree->roots[1] : 0);
+    out.lights = device.upload(lights);
+    out.arguments.set("lights", out.lights).set("light_count", out.light_count);
+    if (tree) {
+        reserve_tree(device, lights, out);
+        fill_tree(*tree, out);
+    }
     bool kinds[light_kind_count] = {};
     for (const Light& light : lights) kinds[static_cast<std::size_t>(light.position.w)] = true;
 #define DEFINE_KIND(name, NAME, value) out.shading["HAS_" #NAME] = kinds[value];
@@ -114,6 +114,25 @@ DeviceScene with_lights(Device& device, DeviceScene scene, const std::vector<Lig
     set_lights(device, lights, tree, scene);
     scene.shading["HAS_REFLECTIONS"] = 0;
     return scene;
+}
+
+void reserve_tree(Device& device, const std::vector<Light>& lights, DeviceScene& scene) {
+    const auto infinite =
+        static_cast<std::size_t>(std::ranges::count_if(lights, [](const Light& light) {
+            return static_cast<LightKind>(light.position.w) == LIGHT_DIRECTIONAL;
+        }));
+    const std::size_t finite = lights.size() - infinite;
+    const bool both = infinite > 0 && finite > 0;
+    const uint roots = (infinite > 0 ? 1u : 0u) + (finite > 0 ? 1u : 0u);
+    scene.nodes = device.allocate<LightNode>(2 * lights.size() - roots);
+    scene.arguments.set("nodes", scene.nodes)
+        .set("root_count", roots)
+        .set("second_root", both ? static_cast<uint>(2 * infinite - 1) : 0u);
+}
+
+void fill_tree(const LightTree& tree, DeviceScene& scene) {
+    scene.lights.upload(tree.lights);
+    scene.nodes.upload(tree.nodes);
 }
 
 void set_outgoing(DeviceScene& scene, const Buffer<Outgoing>& outgoing) {

@@ -17,6 +17,8 @@ struct DeviceScene {
     Defines shading;      // for kernels that evaluate lights and materials, traversal included
     Defines emission;     // for kernels that add what surfaces emit
     uint light_count = 0;
+    Buffer<Light> lights;
+    Buffer<LightNode> nodes;     // of the light trees, if any
     Buffer<Material> materials;  // the scene's, and behind them those of points (see GBufferStage)
     uint own_materials = 0;      // index of the first of these
     bool varies_materials = false;
@@ -36,6 +38,13 @@ struct DeviceScene {
 [[nodiscard]] DeviceScene with_lights(Device& device, DeviceScene scene,
                                       const std::vector<Light>& lights,
                                       const LightTree* tree = nullptr);
+
+/// Makes room for the light tree of a scene that was uploaded without, with arguments nodes,
+/// root_count and second_root for kernels that are launched once fill_tree() has come.
+void reserve_tree(Device& device, const std::vector<Light>& lights, DeviceScene& scene);
+
+/// Puts the lights in the tree's order, also for kernels that have the scene's arguments already.
+void fill_tree(const LightTree& tree, DeviceScene& scene);
 
 /// From now on the stages that light points take them for receivers that no camera sees:
 /// `outgoing`[item] belongs to surfaces[item]. Kernels that were made before are not concerned.

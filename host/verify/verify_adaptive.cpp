@@ -271,7 +271,7 @@ Check check_samples(const Run& run, const LightTree& tree, const Scene& scene,
         const reference::Point point{scene, view.of(item), run.surfaces[item]};
         const glm::uvec2 at = item_pixel(run.tiles, item);
         const auto visibility = [&](uint slot) {
-            return double{run.visible[run.place(tile, slot, cell)]};
+            return reference::known_visibility(run.visible[run.place(tile, slot, cell)]);
         };
         glm::dvec3 sum(0);
         double magnitude = 0;

@@ -65,6 +65,11 @@ SHARED_SIZE(Pass, 24)
 /// V^ at least: what seems hidden is still drawn now and then.
 #define LEAST_VISIBILITY 0.0005f
 
+/// A node of less V^ is believed hidden. Of a pixel's draws such nodes get this share, at most: they
+/// may be bright enough to get all, and no ray can tell that they never matter.
+#define HIDDEN_VISIBILITY 0.01f
+#define HIDDEN_SHARE 0.25f
+
 /// Relative variance of the contribution of a light drawn from a node of several lights, divided by
 /// its probability: the lights of a node differ.
 #define GROUP_VARIANCE 0.5f

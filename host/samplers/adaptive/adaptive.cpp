@@ -202,6 +202,7 @@ Sampler sampler_adaptive() {
         .summary = "by contribution and learned visibility, from a cut of the light tree per tile",
         .color = "#d62728",
         .tree = true,
+        .looks = true,
         .large_batches = true,
         .tile_size = ADAPTIVE_TILE,
         .most_lights = std::size_t{1} << 22,  // draws have 23 bits for a node

@@ -43,14 +43,20 @@ typedef struct Source {
     __global const float* visible;  // V^ of the first pixel; 16 per slot
     Points_n points;
     int_n valid;
-    float_n limit;  // of the weight times the angular size of a node that is not refined
+    float_n hidden;  // scales the weights of nodes that are believed hidden
+    float_n limit;   // of the weight times the angular size of a node that is not refined
 #if LANES > 1
-    Weighed cut_weights[CUT_CAPACITY];  // where it refines
+    Weighed cut_weights[CUT_CAPACITY];
 #endif
 } Source;
 
 INLINE float_n seen_of(const Source* s, uint slot) {
     return select((float_n)(0.0f), FLOATS_AT(s->visible + 16u * slot), s->valid);
+}
+
+// V^ for the control variate: none of what is believed hidden.
+INLINE float_n known_part(float_n visible) {
+    return select(visible, (float_n)(0.0f), visible < HIDDEN_VISIBILITY);
 }
 
 INLINE void add_color(Color_n* sum, Color_n c, float_n factor) {
@@ -65,8 +71,9 @@ INLINE Weighed weigh(const Source* s, uint at, float_n visible) {
     Weighed w;
     w.color = node_estimate_n(&own, &s->points);
     const float whole = node->count > 1u ? 1.0f + GROUP_VARIANCE : 1.0f;
-    const float_n square = visible * (whole - CONTROL * (2.0f - CONTROL) * visible);
-    w.weight = color_luminance_n(w.color) * root_n(square);
+    const float_n square = visible * (whole - CONTROL * (2.0f - CONTROL) * known_part(visible));
+    w.weight = color_luminance_n(w.color) * root_n(square) *
+               select((float_n)(1.0f), s->hidden, visible < HIDDEN_VISIBILITY);
     return w;
 }
 
@@ -98,7 +105,7 @@ INLINE bool next_node(const Source* s, Walk* w, uint* node, Weighed* own, float_
         const uint at = is_cut ? s->cut[w->slot] : w->stack[--w->top];
         *seen = seen_of(s, w->slot);
 #if LANES > 1
-        if (is_cut && s->refines)
+        if (is_cut)
             *own = s->cut_weights[w->slot];
         else
 #endif
@@ -155,17 +162,28 @@ INLINE bool next_weight(const Weights* w, const Source* s, Place* place, uint* e
 #endif
 
 static void find_weights(Weights* w, Source* s, float samples) {
-    w->sum = (float_n)(0.0f);
-    if (s->refines) {
-        for (uint slot = 0u; slot < s->cut_size; ++slot) {
-            const Weighed own = weigh(s, s->cut[slot], seen_of(s, slot));
-            w->sum += own.weight;
+    float_n open = (float_n)(0.0f), hidden = open;
+    s->hidden = (float_n)(1.0f);
+    for (uint slot = 0u; slot < s->cut_size; ++slot) {
+        const float_n visible = seen_of(s, slot);
+        const Weighed own = weigh(s, s->cut[slot], visible);
+        const int_n is_hidden = visible < HIDDEN_VISIBILITY;
+        open += select(own.weight, (float_n)(0.0f), is_hidden);
+        hidden += select((float_n)(0.0f), own.weight, is_hidden);
 #if LANES > 1
-            s->cut_weights[slot] = own;
+        s->cut_weights[slot] = own;
 #endif
-        }
-        s->limit = w->sum * (REFINED_SHARE / samples);
     }
+    const float_n most = open * (HIDDEN_SHARE / (1.0f - HIDDEN_SHARE));
+    s->hidden =
+        select((float_n)(1.0f), most / max(hidden, 1e-30f), (hidden > most) & (most > 0.0f));
+    s->limit = (open + hidden * s->hidden) * (REFINED_SHARE / samples);
+#if LANES > 1
+    for (uint slot = 0u; slot < s->cut_size; ++slot) {
+        const int_n is_hidden = seen_of(s, slot) < HIDDEN_VISIBILITY;
+        s->cut_weights[slot].weight *= select((float_n)(1.0f), s->hidden, is_hidden);
+    }
+#endif
     w->sum = w->largest_point = (float_n)(0.0f);
     w->control.red = w->control.green = w->control.blue = (float_n)(0.0f);
 #if LANES > 1
@@ -177,7 +195,7 @@ static void find_weights(Weights* w, Source* s, float samples) {
     Weighed own;
     float_n seen;
     while (next_node(s, &walk, &node, &own, &seen)) {
-        add_color(&w->control, own.color, seen);
+        add_color(&w->control, own.color, known_part(seen));
         w->sum += own.weight;
         const uint entry = node_entry(s->nodes, node, walk.slot);
         if (entry & SINGLE_POINT) w->largest_point = max(w->largest_point, own.weight);
@@ -304,7 +322,7 @@ KERNEL void adaptive_draw(Tiles tiles, VIEW_PARAMETERS, Pass pass, Budget budget
         uint drawing = lanes_n(times > 0.0f);
         if (!drawing) continue;
         const float_n control =
-            CONTROL * FLOATS_AT(source.visible + 16u * DRAWN_SLOT(entry)) / share;
+            CONTROL * known_part(FLOATS_AT(source.visible + 16u * DRAWN_SLOT(entry))) / share;
         for (; drawing; drawing &= drawing - 1u) {
             const uint lane = lowest(drawing);
             const uint number = UINT_LANE(counts, lane);

@@ -109,6 +109,27 @@ static Trials probe(BVH_PARAMETERS, __global const LightNode* nodes, __global co
 
 static float visible_root(Trials t) { return sqrt((t.passed + PRIOR_SHARE) / (t.traced + 1.0f)); }
 
+// The place of the node to split, of the largest score: of those that something is seen of, once
+// half of the cut are others; NO_ITEM: none can be split.
+static uint next_split(const Cut* cut, uint cut_size) {
+    uint seen = NO_ITEM, hidden = NO_ITEM;
+    uint hidden_count = 0u;
+    float seen_score = 0.0f, hidden_score = 0.0f;
+    for (uint i = 0u; i < cut->size; ++i) {
+        const bool is_hidden = cut->trials[i].passed == 0.0f;
+        hidden_count += is_hidden ? 1u : 0u;
+        if (is_hidden && cut->scores[i] > hidden_score) {
+            hidden = i;
+            hidden_score = cut->scores[i];
+        } else if (!is_hidden && cut->scores[i] > seen_score) {
+            seen = i;
+            seen_score = cut->scores[i];
+        }
+    }
+    if (seen == NO_ITEM) return hidden;
+    return hidden_score > seen_score && 2u * hidden_count < cut_size ? hidden : seen;
+}
+
 // cut_nodes[tile * CUT_CAPACITY + slot], in tree order, and probes[...]; cut_sizes[tile]. With up
 // to cut_size lights, every light is a node. Where nothing is hit, the roots are the cut: later
 // pixel samples may hit something.
@@ -157,10 +178,8 @@ KERNEL void cuts_make(Tiles tiles, VIEW_PARAMETERS, __global const Surface* surf
         cut.next[i] = i + 1u;
     }
     while (cut.size < cut_size) {
-        uint worst = 0u;
-        for (uint i = 1u; i < cut.size; ++i)
-            if (cut.scores[i] > cut.scores[worst]) worst = i;
-        if (cut.scores[worst] <= 0.0f) break;
+        const uint worst = next_split(&cut, cut_size);
+        if (worst == NO_ITEM) break;
         const uint node = cut.nodes[worst];
         const Trials parent = cut.trials[worst];
         const uint added = cut.size++;
