@@ -4,9 +4,7 @@
 #include <algorithm>
 #include <optional>
 
-#include "shared/adaptive.h"
 #include "stages/reflections.hpp"
-#include "stages/seen_lights.hpp"
 
 namespace manylight {
 namespace {
@@ -93,34 +91,21 @@ void Frame::prepare() {
     Stages& s = *stages_;
     if (s.scene.shading.at("HAS_REFLECTIONS") != 0) s.reflections.emplace(device_, s.scene);
     allocate_pixels();
-    std::optional<SeenLightsStage> look;
-    if (look_rays() > 0) look.emplace(device_, s.scene);
     if (!scene_.lights.empty()) make_sampler();
     device_.compile();
-    if (sampler_.tree && s.sampler) {
-        Stopwatch watch(result_.prepare_seconds, device_);
-        plant_tree(look);
-    }
-    if (s.sampler) {
-        Stopwatch watch(result_.prepare_seconds, device_);
-        const Counting counting(device_, memory_.sampler.use);
-        s.sampler->prepare();
-        device_.finish();
-    }
+    if (!s.sampler) return;
+    Stopwatch watch(result_.prepare_seconds, device_);
+    if (sampler_.tree) make_tree();
+    const Counting counting(device_, memory_.sampler.use);
+    s.sampler->prepare();
+    device_.finish();
 }
 
-// Shadow rays to each light that tell seen lights from others, or 0.
-uint Frame::look_rays() const {
-    if (!sampler_.looks || scene_.lights.size() <= CUT_CAPACITY) return 0;
-    return SeenLightsStage::rays_per_light(scene_.lights.size(),
-                                           std::size_t{options_.width} * options_.height);
-}
-
-void Frame::plant_tree(std::optional<SeenLightsStage>& look) {
+void Frame::make_tree() {
     std::vector<bool> seen;
-    if (look) {
+    {
         const Counting counting(device_, memory_.sampler.use);
-        seen = look->find(look_rays(), options_.seed);
+        seen = stages_->sampler->find_seen_lights(options_.seed);
     }
     tree_ = build_light_tree(scene_.lights, seen);
     fill_tree(tree_, stages_->scene);

@@ -16,7 +16,6 @@
 #include "pipeline/schedule.hpp"
 #include "samplers/table.hpp"
 #include "scene/scene.hpp"
-#include "stages/seen_lights.hpp"
 
 namespace manylight {
 
@@ -78,10 +77,9 @@ class Frame {
     [[nodiscard]] static bool is_counted(const Work& work);
     [[nodiscard]] bool has_two_surfaces() const { return plan_.centres && options_.jitters(); }
     [[nodiscard]] DeviceScene upload();
-    [[nodiscard]] uint look_rays() const;
-    void plant_tree(std::optional<SeenLightsStage>& look);
     void allocate_pixels();
     void make_sampler();
+    void make_tree();
     void render_round(const Round& round, Progress& progress);
     void trace_centres(const Work& work, Progress& progress);
     void begin_batch(const Work& work, const Buffer<Surface>& surfaces, Progress& progress);

@@ -83,6 +83,10 @@ class LightSampler {
     LightSampler& operator=(const LightSampler&) = delete;
     virtual ~LightSampler() = default;
 
+    /// A first look at the lights, in the scene's order and before prepare(): [light] whether
+    /// anything in the image sees it, for the light tree. Empty: no such difference is made.
+    [[nodiscard]] virtual std::vector<bool> find_seen_lights(uint /*seed*/) { return {}; }
+
     /// Makes what the whole image needs; its kernels are compiled.
     virtual void prepare() {}
 
@@ -122,7 +126,6 @@ struct Sampler {
     bool all_lights = false;     // light sample i is light i
     bool own_rays = false;       // takes as many as it needs, whatever the number of light samples
     bool tree = false;           // needs the light tree
-    bool looks = false;          // its tree tells lights that are seen from others, where it may
     bool clusters = false;       // clusters pixels, from surfaces at their centres
     bool large_batches = false;  // as large as may be: what is made of one is of all its tiles
     unsigned tile_size = 0;      // pixels of a tile's side; 0: as the options say

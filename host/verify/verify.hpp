@@ -78,6 +78,8 @@ class Verifier {
     [[nodiscard]] Check reflections();
     [[nodiscard]] Check accumulate();
 
+    [[nodiscard]] Check seen_lights();
+
     /// Sampler adaptive with cuts of `cut_size` nodes at most: cuts, visibility, weights, samples.
     [[nodiscard]] std::vector<Check> adaptive(uint cut_size);
 

@@ -12,6 +12,17 @@ constexpr uint most_samples = 64;     // on average, of one draw of all nodes
 constexpr std::size_t budget_pixels = std::size_t{1} << 15;  // are enough to find the mean from
 constexpr std::size_t many_packets = std::size_t{1} << 17;   // of one launch, few of them in use
 
+// Shadow rays of the first look to each light: an eighth of what four pixel samples of all pixels
+// take, or a quarter of a million. None where every light is a node of its own, and where so few
+// would say little of a light.
+uint look_rays(std::size_t lights, std::size_t pixels) {
+    constexpr std::size_t fewest = 16;
+    constexpr std::size_t most = 256;
+    if (lights <= CUT_CAPACITY) return 0;
+    const std::size_t rays = std::max<std::size_t>(2 * pixels, std::size_t{1} << 18) / lights;
+    return rays < fewest ? 0 : static_cast<uint>(std::min(rays, most));
+}
+
 // Pixels with many samples are drawn several times.
 uint rounds_for(uint light_samples) { return (light_samples + most_samples - 1) / most_samples; }
 
@@ -35,7 +46,10 @@ Adaptive::Adaptive(const SamplerContext& context)
       visibility_(context.device, context.scene.light_count, context.tiles,
                   std::min(context.tiles, most_in_work)),
       light_count_(context.scene.light_count),
-      width_(context.width) {}
+      width_(context.width) {
+    if (const uint rays = look_rays(light_count_, context.items()); rays > 0)
+        seen_lights_stage_.emplace(context.device, context.scene, rays);
+}
 
 Footprint Adaptive::footprint(const SamplerLoad& load) {
     Footprint out;
@@ -43,9 +57,15 @@ Footprint Adaptive::footprint(const SamplerLoad& load) {
                CELLS_PER_TILE * most_places * sizeof(Expectation);
     out.tile_buffer = out.tile;
     out.fixed =
+        (load.lights > CUT_CAPACITY ? SeenLightsStage::bytes(load.lights) : 0) +
         packets_for(load.tiles, load.light_samples) * AdaptiveStage::packet_bytes() +
         std::min<std::size_t>(load.tiles, most_in_work) * Visibility::work_bytes(load.lights);
     return out;
+}
+
+std::vector<bool> Adaptive::find_seen_lights(uint seed) {
+    if (!seen_lights_stage_) return {};
+    return seen_lights_stage_->find(seen_lights_stage_->look(seed), seed);
 }
 
 void Adaptive::begin(const Tiles& tiles, const Buffer<Surface>& surfaces, uint seed,
@@ -202,7 +222,6 @@ Sampler sampler_adaptive() {
         .summary = "by contribution and learned visibility, from a cut of the light tree per tile",
         .color = "#d62728",
         .tree = true,
-        .looks = true,
         .large_batches = true,
         .tile_size = ADAPTIVE_TILE,
         .most_lights = std::size_t{1} << 22,  // draws have 23 bits for a node

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "samplers/adaptive/adaptive_samples.hpp"
+#include "samplers/adaptive/seen_lights.hpp"
 #include "samplers/sampler.hpp"
 
 namespace manylight {
@@ -20,6 +21,10 @@ struct TileKnowledge {
 class Adaptive : public LightSampler {
   public:
     explicit Adaptive(const SamplerContext& context);
+
+    /// Where a node of a cut may hold lights that are seen beside others, and there are not too
+    /// many lights for the image.
+    [[nodiscard]] std::vector<bool> find_seen_lights(uint seed) override;
 
     /// Cuts the light trees for tiles, from their first surfaces.
     void begin(const Tiles& tiles, const Buffer<Surface>& surfaces, uint seed,
@@ -47,6 +52,7 @@ class Adaptive : public LightSampler {
     static constexpr uint most_places = 8;     // of a cell in one pass
     static constexpr uint most_in_work = 512;  // tiles, whose V^ is held
 
+    std::optional<SeenLightsStage> seen_lights_stage_;
     CutStage cut_stage_;
     VisibilityStage visibility_stage_;
     AdaptiveStage adaptive_stage_;

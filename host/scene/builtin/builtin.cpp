@@ -83,6 +83,14 @@ const Builtin builtins[] = {
      "120 lights about and among leaves",
      make_thicket,
      {{"leaves", "triangles, of one area together", true, 3000, {30, 300, 3000, 3e4, 3e5}}}},
+    {"vault",
+     "three dim lamps in a closed room, and 3000 bright ones about it",
+     make_vault,
+     {{"outside",
+       "intensity of a lamp outside over that of one inside, at most",
+       false,
+       1e4,
+       {1, 100, 1e4, 1e6, 1e8}}}},
 };
 
 const Builtin& find_builtin(const std::string& name) {

@@ -63,5 +63,6 @@ void make_rooms(GltfWriter& out, const BuiltinOptions& options);
 void make_stacks(GltfWriter& out, const BuiltinOptions& options);
 void make_thicket(GltfWriter& out, const BuiltinOptions& options);
 void make_tubes(GltfWriter& out, const BuiltinOptions& options);
+void make_vault(GltfWriter& out, const BuiltinOptions& options);
 
 }  // namespace manylight
