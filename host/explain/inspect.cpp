@@ -217,8 +217,9 @@ PixelReport inspect_pixel(const Scene& plain, const LightTree& tree, const Camer
                                    choice.share
                              : 0);
         out.radiance += sum.value;
-        out.nodes.push_back({choice.node, choice.weight, visible, knowledge.rounds * choice.share,
-                             contribution, sum.facing, sum.seen, 0});
+        out.nodes.push_back({choice.node, choice.weight, std::abs(visible),
+                             knowledge.rounds * choice.share, contribution, sum.facing, sum.seen,
+                             0});
     }
     out.variance =
         (systematic_variance(shares, values) + std::accumulate(within.begin(), within.end(), 0.0)) /

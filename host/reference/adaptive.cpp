@@ -31,9 +31,9 @@ struct Drawer {
     // `hidden` scales what is believed hidden.
     [[nodiscard]] double weight(const Entry& e, const DrawnPixel& p, double hidden) const {
         // Its mean is the contribution x V^, of which a part is the control variate's.
-        const double v = p.visible[e.slot];
+        const double v = std::abs(p.visible[e.slot]);
         const double variance = tree.nodes[e.node].count > 1 ? double{GROUP_VARIANCE} : 0;
-        const double known = CONTROL * (2 - double{CONTROL}) * known_visibility(v);
+        const double known = CONTROL * (2 - double{CONTROL}) * known_visibility(p.visible[e.slot]);
         return luminance(estimate(e, p)) * std::sqrt(v * (1 + variance - known)) *
                (is_hidden(e, p) ? hidden : 1);
     }

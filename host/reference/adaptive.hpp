@@ -45,7 +45,7 @@ struct DrawnPixel {
     const Surface* surface;  // or none
     Viewer viewer;
     Starts starts;
-    std::vector<double> visible;  // [slot] V^
+    std::vector<double> visible;  // [slot] V^, negative where no ray has passed
 };
 
 /// Draws the nodes of pixels, which share what is refined: as many as the device has lanes.

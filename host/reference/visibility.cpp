@@ -84,7 +84,10 @@ std::vector<double> estimate_visibility(std::span<const Rays> totals,
             }
         }
     }
-    for (double& v : visible) v = std::max(v, double{LEAST_VISIBILITY});
+    for (std::size_t i = 0; i < visible.size(); ++i) {
+        visible[i] = std::max(visible[i], double{LEAST_VISIBILITY});
+        if (!(totals[i / 64].passed > 0)) visible[i] = -visible[i];
+    }
     return visible;
 }
 

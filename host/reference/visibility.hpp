@@ -21,7 +21,7 @@ struct TileRays {
                                            std::span<const TileRays> all);
 
 /// Stage visibility for one tile: [64 * slot + cell] V^, from what is known of the slots, and what
-/// cells counted, [64 * slot + cell], cells in Morton order.
+/// cells counted, [64 * slot + cell], cells in Morton order; negative as long as no ray has passed.
 [[nodiscard]] std::vector<double> estimate_visibility(std::span<const Rays> shared,
                                                       std::span<const Rays> counts);
 

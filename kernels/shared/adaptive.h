@@ -65,8 +65,10 @@ SHARED_SIZE(Pass, 24)
 /// V^ at least: what seems hidden is still drawn now and then.
 #define LEAST_VISIBILITY 0.0005f
 
-/// A node of less V^ is believed hidden. Of a pixel's draws such nodes get this share, at most: they
-/// may be bright enough to get all, and no ray can tell that they never matter.
+/// A node of less V^ is believed hidden, and one of which no ray has passed yet. Of a pixel's draws
+/// such nodes get this share, at most: they may be bright enough to get all, and no ray can tell
+/// that they never matter. They have no part in the control variate, where V^ of them would be a
+/// guess. V^ of a node of which no ray has passed is stored with a minus sign.
 #define HIDDEN_VISIBILITY 0.01f
 #define HIDDEN_SHARE 0.25f
 

@@ -10,7 +10,8 @@ namespace manylight {
 /// What sampler adaptive knows of a tile, and how it would draw a pixel sample's next pass.
 struct TileKnowledge {
     std::vector<uint> cut;       // [slot] node of the light tree
-    std::vector<float> visible;  // [64 * slot + cell] V^, cells in Morton order
+    std::vector<float> visible;  // [64 * slot + cell] V^ (negative: see kernels/shared/adaptive.h),
+                                 // cells in Morton order
     Budget budget;               // of one round
     uint rounds;                 // of draws, whose mean is taken
     unsigned together;           // pixels that share what is refined

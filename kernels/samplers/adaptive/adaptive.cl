@@ -71,7 +71,8 @@ INLINE Weighed weigh(const Source* s, uint at, float_n visible) {
     Weighed w;
     w.color = node_estimate_n(&own, &s->points);
     const float whole = node->count > 1u ? 1.0f + GROUP_VARIANCE : 1.0f;
-    const float_n square = visible * (whole - CONTROL * (2.0f - CONTROL) * known_part(visible));
+    const float_n square =
+        fabs(visible) * (whole - CONTROL * (2.0f - CONTROL) * known_part(visible));
     w.weight = color_luminance_n(w.color) * root_n(square) *
                select((float_n)(1.0f), s->hidden, visible < HIDDEN_VISIBILITY);
     return w;

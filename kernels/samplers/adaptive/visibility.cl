@@ -203,7 +203,8 @@ INLINE float_n adjust(Odds odds, float_n share) {
 
 // visible[...] = V^ of every cell, by shrinkage down a hierarchy: the tile, SLOT_GROUP slots, the
 // slot, then the slot from 16 x 16, 8 x 8 and 4 x 4 pixels. The prior of each level is the estimate
-// of the one above, its odds adjusted to the part's rays to all slots (Odds). Of tile_count tiles
+// of the one above, its odds adjusted to the part's rays to all slots (Odds). Negative as long as
+// no ray to the slot has passed. Of tile_count tiles
 // from first_tile on; visible[] holds these alone. LANES cells of a quadrant (16 x 16 pixels) per
 // work-item.
 KERNEL void visibility_estimate(uint first_tile, uint tile_count, __global const uint* cut_sizes,
@@ -260,6 +261,7 @@ KERNEL void visibility_estimate(uint first_tile, uint tile_count, __global const
         const CellTrials t = of_cells(own_counts + 16u * slot, cell);
         const float_n share =
             shrink_n(t.traced, t.passed, adjust(odds, own_visible[stride * slot]));
-        own_visible[stride * slot] = max(share, LEAST_VISIBILITY);
+        const float_n seen = max(share, LEAST_VISIBILITY);
+        own_visible[stride * slot] = own[slot].passed > 0.0f ? seen : -seen;
     }
 }
