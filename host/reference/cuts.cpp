@@ -108,7 +108,7 @@ struct Entry {
     Rays rays;
 };
 
-bool is_hidden(const Entry& e) { return e.rays.passed == 0; }
+bool is_hidden(const Entry& e) { return e.rays.passed < double{SEEN_RAYS}; }
 
 std::size_t hidden_count(const std::list<Entry>& cut) {
     return static_cast<std::size_t>(std::ranges::count_if(cut, is_hidden));

@@ -86,7 +86,7 @@ std::vector<double> estimate_visibility(std::span<const Rays> totals,
     }
     for (std::size_t i = 0; i < visible.size(); ++i) {
         visible[i] = std::max(visible[i], double{LEAST_VISIBILITY});
-        if (!(totals[i / 64].passed > 0)) visible[i] = -visible[i];
+        if (totals[i / 64].passed < double{SEEN_RAYS}) visible[i] = -visible[i];
     }
     return visible;
 }

@@ -175,7 +175,7 @@ Check check_visibility(const Run& run, const LightTree& tree) {
                     name + ": rays");
                 const double v = visible[64 * slot + cell];
                 check.compare(std::abs(run.visible[run.place(tile, slot, cell)] - v),
-                              (64 + rays / 8) * epsilon * v, name);
+                              (64 + rays / 8) * epsilon * std::abs(v), name);
             }
     }
     return check;

@@ -69,6 +69,7 @@ SHARED_SIZE(Pass, 24)
 /// such nodes get this share, at most: they may be bright enough to get all, and no ray can tell
 /// that they never matter. They have no part in the control variate, where V^ of them would be a
 /// guess. V^ of a node of which no ray has passed is stored with a minus sign.
+#define SEEN_RAYS 0.5f
 #define HIDDEN_VISIBILITY 0.01f
 #define HIDDEN_SHARE 0.25f
 

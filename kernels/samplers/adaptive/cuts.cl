@@ -116,7 +116,7 @@ static uint next_split(const Cut* cut, uint cut_size) {
     uint hidden_count = 0u;
     float seen_score = 0.0f, hidden_score = 0.0f;
     for (uint i = 0u; i < cut->size; ++i) {
-        const bool is_hidden = cut->trials[i].passed == 0.0f;
+        const bool is_hidden = cut->trials[i].passed < SEEN_RAYS;
         hidden_count += is_hidden ? 1u : 0u;
         if (is_hidden && cut->scores[i] > hidden_score) {
             hidden = i;

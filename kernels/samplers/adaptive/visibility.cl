@@ -262,6 +262,6 @@ KERNEL void visibility_estimate(uint first_tile, uint tile_count, __global const
         const float_n share =
             shrink_n(t.traced, t.passed, adjust(odds, own_visible[stride * slot]));
         const float_n seen = max(share, LEAST_VISIBILITY);
-        own_visible[stride * slot] = own[slot].passed > 0.0f ? seen : -seen;
+        own_visible[stride * slot] = own[slot].passed >= SEEN_RAYS ? seen : -seen;
     }
 }
