@@ -89,6 +89,75 @@ const test::TestScene& lamps() {
     return scene;
 }
 
+// Light samples that a sampler draws at every pixel of lamps(), and what the reference expects.
+struct Drawing {
+    Drawing(Device& device, const Sampler& sampler, const LightTree& tree, uint light_samples)
+        : light_samples(light_samples),
+          bvh(build_wide_bvh(lamps().scene, device.form().bvh_width, device.form().bvh_width, 10)),
+          uploaded(upload_scene(device, lamps().scene, bvh, lamps().camera,
+                                sampler.tree ? &tree : nullptr)),
+          tiles(all_tiles(lamps().width, lamps().height, 16)),
+          surfaces(device.allocate<Surface>(item_count(tiles))),
+          places(lamps().scene.lights.size()) {
+        for (uint i = 0; i < places.size(); ++i) places[sampler.tree ? tree.order[i] : i] = i;
+        GBufferStage(device, uploaded).trace(tiles, {}, surfaces);
+        ClusterOptions clusters;
+        clusters.tile_size = 16;
+        drawing = sampler.make({device, uploaded, lamps().scene.lights, tiles.count, 16,
+                                lamps().width, light_samples, clusters, values_of(sampler)});
+        drawing->prepare();
+        drawing->begin(tiles, surfaces, 11, [](std::size_t) {});
+        judge = checks_of(sampler).reference(*drawing, {lamps().scene, tree});
+    }
+
+    // How many are expected on a light at a point.
+    [[nodiscard]] reference::ExpectedCount expected(const Surface& point, std::size_t item,
+                                                    uint light) const {
+        return *dynamic_cast<const reference::OneLight&>(*judge).expected_count(
+            {lamps().scene, lamps().camera, point}, item, light, light_samples);
+    }
+
+    uint light_samples;
+    WideBvh bvh;
+    DeviceScene uploaded;
+    Tiles tiles;
+    Buffer<Surface> surfaces;
+    std::vector<uint> places;  // [light] on the device
+    std::unique_ptr<LightSampler> drawing;
+    std::unique_ptr<reference::Sampler> judge;
+};
+
+// Where the density of a ray times the cell's solid angle is as large as the number of light
+// samples that is expected on the cell, the ray's share is a half. Where none is, it is the whole.
+void expect_shares(Device& device, ReflectionStage& stage, const Drawing& drawn, uint light) {
+    const std::vector<Surface> points = drawn.surfaces.download();
+    std::vector<Reflected> reflected(points.size());
+    std::vector<double> expected(points.size(), -1);
+    int judged = 0;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        if (points[i].position.w < 0) continue;
+        const reference::ExpectedCount counts = drawn.expected(points[i], i, light);
+        double ratio = 0;
+        for (const auto& [part, count] : counts.rounds) ratio += part * count;
+        if (ratio == 0) ratio = 1;
+        reflected[i] = {float4(1, 1, 1, ratio), float4(1), drawn.places[light], 0, 0, 0};
+        if (counts.doubtful) continue;
+        expected[i] = 0;
+        for (const auto& [part, count] : counts.rounds)
+            expected[i] += part * ratio * ratio / (ratio * ratio + count * count);
+        ++judged;
+    }
+    EXPECT_GT(judged, 100);
+    Buffer<float4> estimates = device.upload(std::vector<float4>(points.size(), float4(0)));
+    stage.add_reflected(drawn.tiles, drawn.light_samples, drawn.surfaces, drawn.drawing->tables(),
+                        device.upload(reflected), estimates);
+    const std::vector<float4> found = estimates.download();
+    for (std::size_t i = 0; i < found.size(); ++i)
+        if (expected[i] >= 0) {
+            EXPECT_NEAR(found[i].x, expected[i], 1e-4) << "item " << i << ", light " << light;
+        }
+}
+
 }  // namespace
 
 TEST(light_cells, cells_hold_the_points_that_find_them) {
@@ -123,83 +192,21 @@ TEST(light_cells, name_lights_beside_a_headlight) {
     expect_cells(scene.scene, 3);
 }
 
-// light_probability() of every kernel file that has it, for every light at every pixel, against the
-// reference's: where the density of a ray times the cell's solid angle is as large as the number of
-// light samples that is expected there, the ray's share is a half.
+// light_probability() of every kernel file that has it, for every light at every pixel.
 TEST(light_cells, probabilities_agree_with_the_reference) {
-    const test::TestScene& s = lamps();
-    const Tiles tiles = all_tiles(s.width, s.height, 16);
-    const auto lights = static_cast<uint>(s.scene.lights.size());
-    const LightTree tree = build_light_tree(s.scene.lights);
-    std::vector<uint> places(lights);
-    for (uint place = 0; place < lights; ++place) places[tree.order[place]] = place;
+    const LightTree tree = build_light_tree(lamps().scene.lights);
     FOR_EACH_DEVICE(each) {
         Device device = each;
-        const WideBvh bvh =
-            build_wide_bvh(s.scene, device.form().bvh_width, device.form().bvh_width, 10);
-        for (const Sampler& sampler : all_samplers()) {
-            if (sampler.closed_form.empty()) continue;
-            const DeviceScene uploaded =
-                upload_scene(device, s.scene, bvh, s.camera, sampler.tree ? &tree : nullptr);
-            Buffer<Surface> surfaces = device.allocate<Surface>(item_count(tiles));
-            GBufferStage(device, uploaded).trace(tiles, {}, surfaces);
-            const std::vector<Surface> points = surfaces.download();
-            ClusterOptions clusters;
-            clusters.tile_size = 16;
+        for (const Sampler& sampler : all_samplers())
             for (const uint light_samples : {1u, 5u, 44u}) {
+                if (sampler.closed_form.empty()) continue;
                 SCOPED_TRACE(fmt::format("{}, {} light samples", sampler.name, light_samples));
-                const std::unique_ptr<LightSampler> drawing =
-                    sampler.make({device, uploaded, s.scene.lights, tiles.count, 16, s.width,
-                                  light_samples, clusters, values_of(sampler)});
-                drawing->prepare();
-                drawing->begin(tiles, surfaces, 11, [](std::size_t) {});
-                const std::unique_ptr<reference::Sampler> made =
-                    checks_of(sampler).reference(*drawing, {s.scene, tree});
-                const auto& judge = dynamic_cast<const reference::OneLight&>(*made);
-                ReflectionStage stage(device, uploaded, item_count(tiles), sampler.closed_form);
-                int doubtful = 0;
-                int judged = 0;
-                for (uint light = 0; light < lights; ++light) {
-                    std::vector<Reflected> reflected(item_count(tiles));
-                    std::vector<double> expected(reflected.size(), -1);
-                    for (std::size_t i = 0; i < reflected.size(); ++i) {
-                        if (points[i].position.w < 0) continue;
-                        const auto counts = judge.expected_count({s.scene, s.camera, points[i]}, i,
-                                                                 light, light_samples);
-                        ASSERT_TRUE(counts.has_value());
-                        double mean = 0;
-                        for (const auto& [part, count] : counts->rounds) mean += part * count;
-                        const double ratio = mean > 0 ? mean : 1;
-                        reflected[i] = {float4(1, 1, 1, ratio),
-                                        float4(1),
-                                        sampler.tree ? places[light] : light,
-                                        0,
-                                        0,
-                                        0};
-                        if (counts->doubtful) {
-                            ++doubtful;
-                            continue;
-                        }
-                        expected[i] = 0;
-                        for (const auto& [part, count] : counts->rounds)
-                            expected[i] += part * ratio * ratio / (ratio * ratio + count * count);
-                    }
-                    Buffer<float4> estimates =
-                        device.upload(std::vector<float4>(reflected.size(), float4(0)));
-                    stage.add_reflected(tiles, light_samples, surfaces, drawing->tables(),
-                                        device.upload(reflected), estimates);
-                    const std::vector<float4> found = estimates.download();
-                    for (std::size_t i = 0; i < found.size(); ++i) {
-                        if (expected[i] < 0) continue;
-                        EXPECT_NEAR(found[i].x, expected[i], 1e-4)
-                            << "item " << i << ", light " << light;
-                        ++judged;
-                    }
-                }
-                EXPECT_GT(judged, 2000);
-                EXPECT_LT(doubtful, judged / 5);
+                const Drawing drawn(device, sampler, tree, light_samples);
+                ReflectionStage stage(device, drawn.uploaded, drawn.surfaces.size(),
+                                      sampler.closed_form);
+                for (uint light = 0; light < drawn.places.size(); ++light)
+                    expect_shares(device, stage, drawn, light);
             }
-        }
     }
 }
 

@@ -295,6 +295,35 @@ TEST(statistics, reflections_are_unbiased) {
     }
 }
 
+// Lamps of many cells, a triangle among them, of which samplers favour some: against all cells,
+// each with the one light sample that the shares are for.
+TEST(statistics, reflections_of_many_cells_are_unbiased) {
+    const test::TestScene scene = test::make_scene(
+        [](GltfWriter& out) {
+            Mesh floor;
+            floor.add_quad({-2, 0, 2}, {4, 0, 0}, {0, 0, -4});
+            out.add_mesh("floor", floor, out.add_material({0.8f, 0.7f, 0.6f}, 1, 0.14f));
+            Mesh lamps;
+            lamps.add_quad({-1, 0.3f, -1}, {0.9f, 0, 0}, {0, 0.8f, 0.1f});
+            lamps.add_triangle({0.2f, 0.2f, -0.8f}, {1.2f, 0.2f, -1}, {0.5f, 1.2f, -0.9f});
+            out.add_mesh("lamps", lamps, out.add_emitter({6, 5, 4}));
+            out.add_camera("front", {0, 0.8f, 1.4f}, {0, 0, -0.2f}, 0.7f, 1.6f);
+        },
+        16, 10);
+    ASSERT_GT(scene.scene.lights.size(), 70u);
+    const Device& device = test::devices().front();
+    RenderOptions options = options_for("exhaustive", 1);
+    options.hide_emitters = true;
+    const Moments all = render_seeds(device, scene, options, 150);
+    for (const Sampler& sampler : all_samplers()) {
+        if (sampler.closed_form.empty()) continue;
+        SCOPED_TRACE(sampler.name);
+        options.sampler = sampler.name;
+        options.light_samples = sampler.name == "stochastic-lightcuts" ? 35 : 4;
+        expect_unbiased(judge(render_seeds(device, scene, options, 150), all, scene));
+    }
+}
+
 // Where light samples alone make fireflies.
 TEST(statistics, reflections_lower_the_variance) {
     const test::TestScene scene = polished(0.04f, false);
@@ -319,9 +348,13 @@ TEST(statistics, reflections_are_hidden_as_lights_are) {
     options.hide_emitters = true;
     options.reflections = false;
     const Moments alone = render_seeds(device, scene, options, 150);
-    options.sampler = "adaptive";
     options.reflections = true;
-    expect_unbiased(judge(render_seeds(device, scene, options, 120), alone, scene));
+    for (const char* sampler : {"adaptive", "uniform", "lighttree", "contribution-defensive"}) {
+        SCOPED_TRACE(sampler);
+        options.sampler = sampler;
+        options.light_samples = 2;
+        expect_unbiased(judge(render_seeds(device, scene, options, 120), alone, scene));
+    }
 }
 
 // Jittered pixel samples estimate the same image whatever the light sampler.
