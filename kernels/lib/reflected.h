@@ -61,7 +61,9 @@ KERNEL void reflections_add(Tiles tiles, VIEW_PARAMETERS, __global const Surface
     if (!item_in_image(tiles, item) || surface_missed(surfaces + item)) return;
     const Reflected met = reflected[item];
     if (met.emission.w == 0.0f) return;
+#if defined(CLOSED_FORM) || HAS_OUTGOING
     const Receiver receiver = make_receiver(surfaces, item, materials, VIEW);
+#endif
 #ifdef CLOSED_FORM
     // No light sample is on a cell that is no light.
     const float share = met.light == NO_LIGHT
