@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // What a driver makes of shared structs and random numbers; used by verify and the tests only.
+#include "lib/light_cells.h"
 #include "lib/random.h"
 #include "shared/layout.h"
 
@@ -22,4 +23,11 @@ KERNEL void probe_random(uint count, uint seed, __global uint4* bits, __global f
     if (i >= count) return;
     bits[i] = random_bits(i, i ^ 5u, i * 7u, seed);
     positions[i] = pixel_position(i / 16u, i, seed);
+}
+
+// cells[i]: of the point of grid i / 64 that has the i-th weights.
+KERNEL void probe_cells(uint count, __global const CellGrid* grids, __global const float2* weights,
+                        __global uint* cells) {
+    const uint i = get_global_id(0);
+    if (i < count) cells[i] = cell_of(grids + i / 64u, weights[i]);
 }

@@ -2,11 +2,14 @@
 // Stage reflections: area lights as glossy surfaces reflect them, by one ray per pixel sample that
 // is drawn from the GGX lobe. It shares the lobe's light with the light samples by the power
 // heuristic (multiple importance sampling: Veach and Guibas, "Optimally Combining Sampling
-// Techniques for Monte Carlo Rendering", 1995); see lobe_share() in lib/brdf.h.
+// Techniques for Monte Carlo Rendering", 1995); see lobe_share() in lib/brdf.h, and
+// lib/reflected.h, which adds what is found here.
 #include "lib/direct.h"
+#include "lib/light_cells.h"
 #include "lib/random.h"
 #include "lib/textures.h"
 #include "lib/tiles.h"
+#include "shared/reflected.h"
 
 #if HAS_REFLECTIONS && HAS_GGX
 
@@ -43,15 +46,18 @@ static float3 sample_lobe(float alpha, float3 n, float3 wo, float2 u) {
 #define MAP_PARAMETERS
 #endif
 
-// Adds to estimates[item].rgb, cd/m2. cell_areas[triangle]: see Scene.
-KERNEL void reflections_add(Tiles tiles, VIEW_PARAMETERS, BVH_PARAMETERS,
-                            __global const float* vertices, __global const uint* indices,
-                            __global const uint* triangle_materials,
-                            __global const Material* materials, __global const float* cell_areas,
-                            __global const Surface* surfaces, uint pixel_sample, uint seed,
-                            __global float4* estimates MAP_PARAMETERS) {
+// Fills reflected[item] of the items that hit the scene. grid_of[triangle], grids, cell_lights: see
+// LightCells in host/scene/scene.hpp.
+KERNEL void reflections_trace(Tiles tiles, VIEW_PARAMETERS, BVH_PARAMETERS,
+                              __global const float* vertices, __global const uint* indices,
+                              __global const uint* triangle_materials,
+                              __global const Material* materials, __global const uint* grid_of,
+                              __global const CellGrid* grids, __global const uint* cell_lights,
+                              __global const Surface* surfaces, uint pixel_sample, uint seed,
+                              __global Reflected* reflected MAP_PARAMETERS) {
     const uint item = get_global_id(0);
     if (!item_in_image(tiles, item) || surface_missed(surfaces + item)) return;
+    reflected[item].emission.w = 0.0f;
     const Receiver r = make_receiver(surfaces, item, materials, VIEW);
     if (!r.reflects) return;
     const uint2 pixel = item_pixel(tiles, item);
@@ -63,8 +69,8 @@ KERNEL void reflections_add(Tiles tiles, VIEW_PARAMETERS, BVH_PARAMETERS,
 #if HAS_INSTANCES
     if (hit.triangle >= bvh_instances[0].first) return;  // no light is of one
 #endif
-    const float area = hit.triangle == ~0u ? 0.0f : cell_areas[hit.triangle];
-    if (area == 0.0f) return;
+    const uint grid = hit.triangle == ~0u ? NO_GRID : grid_of[hit.triangle];
+    if (grid == NO_GRID) return;
     const uint3 corner = vload3(hit.triangle, indices);
     const float3 v0 = vload3(corner.x, vertices);
     const float3 edge1 = vload3(corner.y, vertices) - v0;
@@ -73,13 +79,14 @@ KERNEL void reflections_add(Tiles tiles, VIEW_PARAMETERS, BVH_PARAMETERS,
     const float cosine = -dot(wi, normalize(face));
     float4 emission = materials[triangle_materials[hit.triangle]].emission;
     if (cosine < 0.0f && emission.w == 0.0f) return;
+    const float2 weights = hit_weights(ray, v0, edge1, edge2);
 #if HAS_TEXTURES
     emission.xyz *= sample_map(TEXTURE_ARGUMENTS,
                                MAP_KIND_COUNT * triangle_materials[hit.triangle] + MAP_EMISSION,
-                               corner, hit_weights(ray, v0, edge1, edge2), 0.0f)
+                               corner, weights, 0.0f)
                         .xyz;
 #endif
-    const float solid_angle = area * fabs(cosine) / (hit.t * hit.t);
+    const float solid_angle = grids[grid].area * fabs(cosine) / (hit.t * hit.t);
     const Material m = r.material;
     const float n_in = dot(r.normal, wi);
     const float3 h = normalize(wi + r.outgoing);
@@ -88,13 +95,9 @@ KERNEL void reflections_add(Tiles tiles, VIEW_PARAMETERS, BVH_PARAMETERS,
     const float s = schlick(dot(r.outgoing, h));
     const float3 fresnel =
         (1.0f - m.base_color.w) * dielectric_fresnel(m, s) + m.base_color.w * metal_fresnel(m, s);
-    const float share = lobe_share(density, solid_angle);
-    const float3 value = fresnel * (lobe * n_in / density * share) * emission.xyz;
-#if HAS_OUTGOING
-    estimates[item].xyz += value * r.throughput;
-#else
-    estimates[item].xyz += value;
-#endif
+    reflected[item].emission = (float4)(emission.xyz, density * solid_angle);
+    reflected[item].fresnel = (float4)(fresnel, lobe * n_in / density);
+    reflected[item].light = cell_lights[grids[grid].first + cell_of(grids + grid, weights)];
 }
 
 #endif

@@ -15,11 +15,14 @@ render() {
         --pixel-centre "$@"
 }
 render --sampler exhaustive --spp 400 --seed 999 -o $folder/reference.exr
-for sampler in lighttree adaptive; do
+for sampler in uniform power lighttree contribution-defensive adaptive; do
     for option in --no-reflections ""; do
-        render --sampler $sampler $option -o $folder/image.exr
-        echo "$sampler ${option:-with reflected rays}: $(build/manylight compare $folder/image.exr \
-            $folder/reference.exr)"
+        for seed in 1 2 3; do
+            render --sampler $sampler --light-samples 4 --spp 4 --seed $seed $option \
+                -o $folder/image.exr
+            echo "$sampler ${option:-with reflected rays}, seed $seed: $(build/manylight compare \
+                $folder/image.exr $folder/reference.exr)"
+        done
     done
 done
 for option in --no-reflections ""; do

@@ -408,29 +408,33 @@ TEST(emitters, areas_of_cells) {
     std::vector<glm::vec3> corners = two_triangles({}, u, v);
     for (const glm::vec3& p : {glm::vec3(0), -v, u}) corners.push_back(p);
     Scene scene = emitters_of(corners);
-    ASSERT_EQ(scene.cell_areas.size(), 3u);
+    const auto area_of = [](const Scene& s, std::size_t triangle) -> double {
+        const LightCells& cells = s.light_cells;
+        return cells.grid_of[triangle] == NO_GRID ? 0 : cells.grids[cells.grid_of[triangle]].area;
+    };
+    ASSERT_EQ(scene.light_cells.grid_of.size(), 3u);
     const double quad = glm::length(glm::cross(u, v)) / 20;
-    EXPECT_NEAR(scene.cell_areas[0], quad, 1e-6 * quad);
-    EXPECT_EQ(scene.cell_areas[1], scene.cell_areas[0]);
-    EXPECT_NEAR(scene.cell_areas[2], quad * 20 / 128, 1e-6 * quad);
+    EXPECT_NEAR(area_of(scene, 0), quad, 1e-6 * quad);
+    EXPECT_EQ(area_of(scene, 1), area_of(scene, 0));
+    EXPECT_NEAR(area_of(scene, 2), quad * 20 / 128, 1e-6 * quad);
     for (const Light& light : scene.lights) {
         const double area = glm::length(glm::cross(glm::dvec3(light.axis), glm::dvec3(light.edge)));
         if (kind_of(light) == LIGHT_QUAD)
-            EXPECT_NEAR(area, scene.cell_areas[0], 1e-5 * area);
+            EXPECT_NEAR(area, area_of(scene, 0), 1e-5 * area);
         else
-            EXPECT_NEAR(area / 2, scene.cell_areas[2], 1e-5 * area);
+            EXPECT_NEAR(area / 2, area_of(scene, 2), 1e-5 * area);
     }
     // Triangles that emit nothing have none; points neither.
     scene.materials.push_back({});
     scene.triangle_materials[1] = 1;
     scene.lights.clear();
     add_emitters(scene, 0);
-    EXPECT_EQ(scene.cell_areas[1], 0);
-    EXPECT_GT(scene.cell_areas[0], 0);
+    EXPECT_EQ(area_of(scene, 1), 0);
+    EXPECT_GT(area_of(scene, 0), 0);
     Scene points = scene;
-    points.cell_areas.clear();
+    points.light_cells = {};
     add_emitters(points, 10);
-    EXPECT_TRUE(points.cell_areas.empty());
+    EXPECT_TRUE(points.light_cells.empty());
 }
 
 // 400 lamps of 4096 cells each would be more than a million lights: their cells are of 0.5 m.

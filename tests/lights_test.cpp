@@ -181,7 +181,7 @@ TEST(lights, nanometres) {
         if (points > 0)
             for (test::TestScene* scene : {&a, &b}) {
                 scene->scene.lights.clear();
-                scene->scene.cell_areas.clear();
+                scene->scene.light_cells = {};
                 add_emitters(scene->scene, points);
             }
         EXPECT_EQ(a.scene.lights.size(), b.scene.lights.size());

@@ -152,6 +152,19 @@ TEST(memory, frames_are_planned) {
     }
 }
 
+// Stage reflections keeps what its rays have met, and where cells lie.
+TEST(memory, reflections_are_planned) {
+    test::TestScene scene = test::scene_named("kinds");
+    for (Material& material : scene.scene.materials) material.roughness = 0.01f;
+    ASSERT_TRUE(find_features(scene.scene).reflections);
+    FOR_EACH_DEVICE(device)
+    for (const char* sampler : {"lighttree", "adaptive"}) {
+        SCOPED_TRACE(sampler);
+        const RenderOptions options = options_of(sampler, scene);
+        expect_frame_planned(device, scene, options, 1);
+    }
+}
+
 // Nothing is planned or made of a sampler that has nothing to draw.
 TEST(memory, no_lights_take_none) {
     test::TestScene scene = test::scene_named("kinds");

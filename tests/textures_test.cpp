@@ -517,7 +517,7 @@ TEST(textures, agree_with_the_reference) {
         40, 30);
     Scene scene = base.scene;
     scene.lights.resize(3);
-    scene.cell_areas.clear();
+    scene.light_cells = {};
     std::vector<glm::vec2>& coordinates = scene.coordinates.emplace_back();
     for (const glm::vec3& v : scene.vertices) {
         coordinates.emplace_back(0.9f * v.x + 0.2f * v.z, 0.7f * v.z - v.y);

@@ -113,11 +113,11 @@ TEST(verify, names_what_is_left_out) {
         Verification less{{}, Coverage(device.form().lanes > 1), true};
         Check silent{.stage = "reflections", .tolerance = ""};
         silent.compare(0, 0, "", true);
-        less.coverage.add({{"reflections.cl", "reflections_add", "reflections", {}}}, {silent});
+        less.coverage.add({{"reflections.cl", "reflections_trace", "reflections", {}}}, {silent});
         less.scenes.push_back({"one", "", 0, 0, 0, 0, {silent}});
         const std::string verdict = less.verdict();
         EXPECT_EQ(verdict.find("computes correctly"), std::string::npos) << verdict;
-        for (const char* word : {"stage reflections", "reflections_add of reflections.cl",
+        for (const char* word : {"stage reflections", "reflections_trace of reflections.cl",
                                  "samples_draw of samplers/ris/ris.cl", "accumulate_add_pass"})
             EXPECT_NE(verdict.find(word), std::string::npos) << word << " in\n" << verdict;
     }

@@ -21,8 +21,8 @@ ContentHash& ContentHash::add(const Scene& scene) {
     };
     add(scene.origin.x).add(scene.origin.y).add(scene.origin.z);
     add_all(scene.vertices, scene.vertex_normals, scene.indices, scene.triangle_materials);
-    add_all(scene.instances, scene.materials, scene.lights, scene.cell_areas, scene.maps,
-            scene.textures);
+    add_all(scene.instances, scene.materials, scene.lights, scene.maps, scene.textures);
+    add_all(scene.light_cells.grid_of, scene.light_cells.grids, scene.light_cells.lights);
     add_all(scene.texels, scene.colors, scene.tangents, scene.alpha_of, scene.alpha_triangles);
     for (const auto& set : scene.coordinates) add_all(set);
     return *this;

@@ -89,7 +89,6 @@ void Frame::prepare() {
                                            options_.estimates_error());
     }
     Stages& s = *stages_;
-    if (s.scene.shading.at("HAS_REFLECTIONS") != 0) s.reflections.emplace(device_, s.scene);
     allocate_pixels();
     if (!scene_.lights.empty()) make_sampler();
     device_.compile();
@@ -111,7 +110,6 @@ void Frame::make_tree() {
     fill_tree(tree_, stages_->scene);
 }
 
-// Items of a batch.
 std::size_t Frame::items() const {
     return std::size_t{plan_.tiles_per_batch} * options_.tile_size() * options_.tile_size();
 }
@@ -134,6 +132,8 @@ void Frame::allocate_pixels() {
         s.centres = has_two_surfaces() ? device_.allocate<Surface>(items()) : s.surfaces;
     s.centres_first = has_two_surfaces() ? items() : 0;
     s.estimates = {allocate_zeros(device_, items()), allocate_zeros(device_, items())};
+    if (s.scene.shading.at("HAS_REFLECTIONS") != 0)
+        s.reflections.emplace(device_, s.scene, items(), sampler_.closed_form);
 }
 
 void Frame::make_sampler() {
@@ -261,7 +261,8 @@ void Frame::take_samples(Work& work, Progress& progress) {
             continue;
         }
         if (s.reflections)
-            s.reflections->add(visit.batch, schedule_.position(i), s.surfaces, s.estimates.sums);
+            s.reflections->add(visit.batch, schedule_.position(i), light_samples, s.surfaces,
+                               s.sampler->tables(), s.estimates.sums);
         if (s.reflections || !work.pace.by_passes()) accumulate(work, i, {});
         device_.finish();
         work.pace.end(light_samples);

@@ -73,7 +73,7 @@ class Frame {
     struct Stages;
     struct Work;
 
-    [[nodiscard]] std::size_t items() const;
+    [[nodiscard]] std::size_t items() const;  // of a batch
     [[nodiscard]] static bool is_counted(const Work& work);
     [[nodiscard]] bool has_two_surfaces() const { return plan_.centres && options_.jitters(); }
     [[nodiscard]] DeviceScene upload();

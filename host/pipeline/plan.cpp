@@ -8,6 +8,7 @@
 #include "samplers/table.hpp"
 #include "stages/accumulate.hpp"
 #include "stages/device_scene.hpp"
+#include "stages/reflections.hpp"
 
 namespace manylight {
 namespace {
@@ -107,8 +108,10 @@ Plan make_plan(const DeviceInfo& device, const Scene& scene, const WideBvh& bvh,
     };
     const Footprint need = footprint(tiles.count);
     const std::size_t surfaces = two_surfaces ? 2 : 1;
+    const bool reflects = options.reflections && find_features(scene).reflections;
     const std::size_t tile_bytes =
-        need.tile + tile_items * (surfaces * surface_bytes + 2 * sizeof(float4));
+        need.tile + tile_items * (surfaces * surface_bytes + 2 * sizeof(float4) +
+                                  (reflects ? ReflectionStage::item_bytes() : 0));
     const std::size_t budget =
         options.memory > 0 ? options.memory : std::min(device.global_memory / 2, default_budget);
     const std::size_t fixed = plan.scene_bytes + plan.image_bytes + need.image + need.fixed;

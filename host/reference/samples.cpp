@@ -32,11 +32,19 @@ double share_of(std::span<const uint> cdf, uint light) {
     return cdf.back() > 0 ? width / cdf.back() : 0;
 }
 
+std::optional<ExpectedCount> OneLight::expected_count(const Point& point, std::size_t item,
+                                                      uint light, uint sample_count) const {
+    const std::optional<double> p = probability(point, item, light);
+    if (!p) return {};
+    return ExpectedCount{{{1, *p * sample_count}}};
+}
+
 Estimate OneLight::estimate(const Tracer& tracer, const Point& point,
                             const PixelDraws& draws) const {
     Estimate out;
     if (point.surface.position.w < 0) return out;
     const auto lights = static_cast<uint>(point.scene.lights.size());
+    const bool closed_form = probability(point, draws.item, 0).has_value();
     for (uint sample = 0; sample < draws.sample_count; ++sample) {
         const auto bits = random_bits(draws.pixel, draws.pixel_sample, sample, draws.seed);
         const Choice choice =
@@ -46,13 +54,16 @@ Estimate OneLight::estimate(const Tracer& tracer, const Point& point,
         if (choice.weight == 0) continue;
         const Light& light = point.scene.lights[choice.light];
         const glm::dvec2 u(unit_fraction(bits[1]), unit_fraction(bits[2]));
-        const Unshadowed term = unshadowed(point.surface, point.material(), point.viewer, light, u);
+        const double count = closed_form ? 1 / choice.weight : 1;
+        const Unshadowed term =
+            unshadowed(point.surface, point.material(), point.viewer, light, u, count);
         if (draws.judge)
-            out.slack += choice.weight *
-                         rounding_slack(point.surface, point.material(), point.viewer, light, u);
+            out.slack += choice.weight * rounding_slack(point.surface, point.material(),
+                                                        point.viewer, light, u, count);
         if (term.value == glm::dvec3(0)) continue;
         const glm::dvec3 value = term.value * choice.weight;
-        out.slack += choice.slack * glm::length(value);
+        // The share changes by up to twice as much as the weight, relatively.
+        out.slack += (closed_form ? 3 : 1) * choice.slack * glm::length(value);
         if (!tracer.occluded(term.shadow)) {
             out.value += value;
             out.magnitude += value;

@@ -5,6 +5,7 @@
 #include <array>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "reference/shading.hpp"
 
@@ -66,6 +67,16 @@ struct Choice {
     double slack = 0;         // what rounding may do to the weight, relative; where asked for
 };
 
+/// How many light samples are expected on a light.
+struct ExpectedCount {
+    struct Round {
+        double part;   // of all light samples that are drawn in it
+        double count;  // of those on the light, were all drawn as these are
+    };
+    std::vector<Round> rounds;
+    bool doubtful = false;  // rounding may have drawn them in another way
+};
+
 /// A sampler that draws lights one at a time.
 class OneLight : public Sampler {
   public:
@@ -78,6 +89,12 @@ class OneLight : public Sampler {
                                                             uint /*light*/) const {
         return {};
     }
+
+    /// How many of a pixel sample's light samples are expected on a light; none where there is no
+    /// closed form.
+    [[nodiscard]] virtual std::optional<ExpectedCount> expected_count(const Point& point,
+                                                                      std::size_t item, uint light,
+                                                                      uint sample_count) const;
 
     [[nodiscard]] Estimate estimate(const Tracer& tracer, const Point& point,
                                     const PixelDraws& draws) const override;

@@ -166,7 +166,7 @@ double versine_rounding(double cosine) {
 }
 
 Unshadowed shade(const glm::dvec3& position, const Surface& surface, const Material& material,
-                 const Viewer& viewer, const Light& light, const glm::dvec2& u,
+                 const Viewer& viewer, const Light& light, const glm::dvec2& u, double count,
                  const LightShift& shift = {}) {
     const glm::dvec3 normal = glm::normalize(glm::dvec3(surface.normal));
     const glm::dvec3 horizon(surface.horizon);
@@ -179,7 +179,7 @@ Unshadowed shade(const glm::dvec3& position, const Surface& surface, const Mater
     if (cosine <= 0 || glm::dot(horizon, e.towards) <= 0) return out;
     const Brdf f = split_brdf(material, normal, e.towards, viewer.direction(position));
     const double share =
-        reflects(surface, material, viewer) ? light_share(f.density, e.solid_angle) : 1;
+        reflects(surface, material, viewer) ? light_share(f.density, e.solid_angle, count) : 1;
     out.value = (f.diffuse + f.specular * share) * e.light * cosine * viewer.throughput();
     out.shadow.origin = position + horizon * static_cast<double>(surface.horizon.w);
     out.shadow.direction = e.infinite ? e.towards : e.target - out.shadow.origin;
@@ -242,12 +242,12 @@ bool reflects(const Surface& surface, const Material& material, const Viewer& vi
 }
 
 Unshadowed unshadowed(const Surface& surface, const Material& material, const Viewer& viewer,
-                      const Light& light, const glm::dvec2& u) {
-    return shade(glm::dvec3(surface.position), surface, material, viewer, light, u);
+                      const Light& light, const glm::dvec2& u, double count) {
+    return shade(glm::dvec3(surface.position), surface, material, viewer, light, u, count);
 }
 
 double rounding_slack(const Surface& surface, const Material& material, const Viewer& viewer,
-                      const Light& light, const glm::dvec2& u) {
+                      const Light& light, const glm::dvec2& u, double count) {
     const glm::dvec3 position(surface.position);
     const Emission e = emission(light, position, u);
     const double largest =
@@ -255,14 +255,14 @@ double rounding_slack(const Surface& surface, const Material& material, const Vi
                   std::abs(e.target.x), std::abs(e.target.y), std::abs(e.target.z)});
     const double to_light = e.infinite ? 1 : glm::length(e.target - position);
     const double shift = 8 * epsilon * std::max({largest, to_light, viewer.distance(position)});
-    const glm::dvec3 centre = shade(position, surface, material, viewer, light, u).value;
+    const glm::dvec3 centre = shade(position, surface, material, viewer, light, u, count).value;
     const auto change = [&](const glm::dvec3& step, const LightShift& light_shift) {
         double most = 0;
         for (const double sign : {-1.0, 1.0}) {
             const LightShift to{sign * light_shift.normal, sign * light_shift.versine,
                                 sign * light_shift.towards};
             const glm::dvec3 value =
-                shade(position + sign * step, surface, material, viewer, light, u, to).value;
+                shade(position + sign * step, surface, material, viewer, light, u, count, to).value;
             most = std::max(most, glm::length(value - centre));
         }
         return most;

@@ -77,14 +77,14 @@ class Viewers {
 /// The light samples' share of what the lobe reflects of a point of a light's cell (area x cosine /
 /// squared distance = `solid_angle`, sr), where reflected directions have `density`, 1/sr: the
 /// power heuristic (Veach and Guibas, "Optimally Combining Sampling Techniques for Monte Carlo
-/// Rendering", 1995) for one sample of each.
-[[nodiscard]] inline double light_share(double density, double solid_angle) {
-    const double light = 1 / solid_angle;
+/// Rendering", 1995) for `count` samples of the light and one of the lobe.
+[[nodiscard]] inline double light_share(double density, double solid_angle, double count) {
+    const double light = count / solid_angle;
     return solid_angle > 0 ? light * light / (light * light + density * density) : 1;
 }
 
 /// Direct light of one light, or of its point u in [0, 1)^2, without visibility and without what is
-/// left to stage reflections.
+/// left to stage reflections, where `count` light samples are expected on the light.
 struct Unshadowed {
     glm::dvec3 value;  // f Le G of paper eq. (1) times the throughput, cd/m2
     Ray shadow;        // the segment to be free
@@ -94,7 +94,8 @@ struct Unshadowed {
     EndShifts rounding;
 };
 [[nodiscard]] Unshadowed unshadowed(const Surface& surface, const Material& material,
-                                    const Viewer& viewer, const Light& light, const glm::dvec2& u);
+                                    const Viewer& viewer, const Light& light, const glm::dvec2& u,
+                                    double count = 1);
 
 [[nodiscard]] inline bool has_area(const Light& light) {
     const auto kind = static_cast<LightKind>(light.position.w);
@@ -107,7 +108,8 @@ struct Unshadowed {
 /// its sides, of the direction to a directional light by 4 units, and of 1 - the cosine to a spot's
 /// axis by what 4 units do to the sine, added up.
 [[nodiscard]] double rounding_slack(const Surface& surface, const Material& material,
-                                    const Viewer& viewer, const Light& light, const glm::dvec2& u);
+                                    const Viewer& viewer, const Light& light, const glm::dvec2& u,
+                                    double count = 1);
 
 [[nodiscard]] inline double luminance(const glm::dvec3& rgb) {
     return 0.2126 * rgb.r + 0.7152 * rgb.g + 0.0722 * rgb.b;

@@ -57,7 +57,11 @@ glm::dvec4 Triangle::tangent(int k) const {
                       glm::determinant(linear) < 0 ? -t.w : t.w);
 }
 
-double Triangle::cell_area() const { return instance_ ? 0 : scene_.cell_areas[stored_]; }
+const CellGrid* Triangle::cells() const {
+    const LightCells& cells = scene_.light_cells;
+    const bool lights = !instance_ && cells.grid_of[stored_] != NO_GRID;
+    return lights ? &cells.grids[cells.grid_of[stored_]] : nullptr;
+}
 
 glm::dvec3 Triangle::stored_corner(int k) const { return glm::dvec3(scene_.vertices[vertex(k)]); }
 

@@ -24,8 +24,8 @@ class Triangle {
     [[nodiscard]] glm::dvec3 normal(int k) const;
     /// xyz: unit; w: as in glTF; 0 where it has none.
     [[nodiscard]] glm::dvec4 tangent(int k) const;
-    /// Of each cell of the area light that it is, m2; 0: it is none.
-    [[nodiscard]] double cell_area() const;
+    /// How the area light that it is is cut to cells; none where it is none.
+    [[nodiscard]] const CellGrid* cells() const;
     /// Corner k as it is stored, in the frame of its mesh.
     [[nodiscard]] glm::dvec3 stored_corner(int k) const;
     [[nodiscard]] bool is_of_instance() const { return instance_ != nullptr; }

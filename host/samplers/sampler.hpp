@@ -111,6 +111,13 @@ class LightSampler {
         begin(tiles, surfaces, seed, progress);
     }
 
+    /// The buffers that kernels of the row's file draw lights from, by their names there; what is
+    /// in them, since the last begin().
+    [[nodiscard]] virtual const Arguments& tables() const {
+        static const Arguments none;
+        return none;
+    }
+
     // What the last begin() made.
     [[nodiscard]] virtual std::size_t begin_rays() const { return 0; }  // shadow rays that it took
     [[nodiscard]] virtual std::size_t cluster_count() const { return 0; }
@@ -131,6 +138,10 @@ struct Sampler {
     unsigned tile_size = 0;      // pixels of a tile's side; 0: as the options say
     std::size_t most_lights = std::numeric_limits<std::size_t>::max();
     std::vector<Parameter> parameters = {};
+    // The kernel file that has light_probability(), for the shares of stage reflections (see
+    // kernels/lib/reflected.h); none where a light sample's probability has no closed form: there
+    // one light sample on each cell of an area light is taken for what it is.
+    std::string_view closed_form = {};
     Footprint (*footprint)(const SamplerLoad& load) = nullptr;
     std::unique_ptr<LightSampler> (*make)(const SamplerContext& context) = nullptr;
 };

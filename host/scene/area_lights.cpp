@@ -206,12 +206,15 @@ double choose_side(const std::vector<Shape>& shapes) {
     return side;
 }
 
-// A point of an emitter's plane, or a vector in it, by its weights of vertices 1 and 2.
-glm::dvec2 weights_of(const Emitter& e, const glm::dvec3& v) {
-    const glm::dvec3 a(e.edge1());
-    const glm::dvec3 b(e.edge2());
+// A vector as a sum of parts of two.
+glm::dvec2 parts_along(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& v) {
     const glm::dmat2 gram(glm::dot(a, a), glm::dot(a, b), glm::dot(a, b), glm::dot(b, b));
     return glm::inverse(gram) * glm::dvec2(glm::dot(a, v), glm::dot(b, v));
+}
+
+// A point of an emitter's plane, or a vector in it, by its weights of vertices 1 and 2.
+glm::dvec2 weights_of(const Emitter& e, const glm::dvec3& v) {
+    return parts_along(glm::dvec3(e.edge1()), glm::dvec3(e.edge2()), v);
 }
 
 // Where in or, below 0, how far out of the emitter a point of its plane is.
@@ -233,6 +236,21 @@ glm::vec3 radiance_of(const Light& cell, const Emitter& first, const Emitter& se
                             weights_of(e, v), triangle);
 }
 
+// Of one of the emitters of a shape that is cut to n.x by n.y cells, the next of the table.
+CellGrid grid_of(const Emitter& e, const Shape& s, const glm::uvec2& n, std::size_t first) {
+    const glm::dvec2 size(n);
+    const glm::dvec2 at = size * parts_along(s.u, s.v, glm::dvec3(e.vertices[0]) - s.corner);
+    const glm::dvec2 edge1 = size * parts_along(s.u, s.v, glm::dvec3(e.edge1()));
+    const glm::dvec2 edge2 = size * parts_along(s.u, s.v, glm::dvec3(e.edge2()));
+    const double area = glm::length(glm::cross(s.u / size.x, s.v / size.y));
+    return {float4(at.x, edge1.x, edge2.x, s.kind),
+            float4(at.y, edge1.y, edge2.y, 0),
+            static_cast<float>(area / (s.kind == LIGHT_TRIANGLE ? 2 : 1)),
+            static_cast<std::uint32_t>(first),
+            n.x,
+            n.y};
+}
+
 void add_cells(AreaLights& out, const Shape& s, const std::vector<Emitter>& emitters, double side,
                const RadianceOfPart& radiance_of_part) {
     const Emitter& e = emitters[s.emitter];
@@ -244,11 +262,13 @@ void add_cells(AreaLights& out, const Shape& s, const std::vector<Emitter>& emit
                    float4(sign * v, s.offset), float4(e.radiance, 0)};
         if (s.varies)
             cell.emission = float4(radiance_of(cell, e, emitters[s.second], radiance_of_part), 0);
-        if (cell.emission != float4(0)) out.lights.push_back(cell);
+        const bool dark = cell.emission == float4(0);
+        out.cell_lights.push_back(dark ? NO_LIGHT : static_cast<std::uint32_t>(out.lights.size()));
+        if (!dark) out.lights.push_back(cell);
     };
     const bool triangle = s.kind == LIGHT_TRIANGLE;
-    const auto area = static_cast<float>(glm::length(glm::cross(u, v)) / (triangle ? 2 : 1));
-    out.cell_areas[s.emitter] = out.cell_areas[s.second] = area;
+    for (const std::size_t i : {s.emitter, s.second})
+        out.grids[i] = grid_of(emitters[i], s, n, out.cell_lights.size());
     for (unsigned j = 0; j < n.y; ++j)
         for (unsigned i = 0; i < (triangle ? n.x - j : n.x); ++i) {
             const glm::dvec3 corner =
@@ -266,7 +286,7 @@ AreaLights make_area_lights(const std::vector<Emitter>& emitters,
     const std::vector<Shape> shapes = find_shapes(emitters);
     const double side = choose_side(shapes);
     AreaLights out;
-    out.cell_areas.resize(emitters.size());
+    out.grids.resize(emitters.size());
     for (const Shape& s : shapes) add_cells(out, s, emitters, side, radiance_of_part);
     return out;
 }

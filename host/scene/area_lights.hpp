@@ -25,8 +25,9 @@ struct Emitter {
 };
 
 struct AreaLights {
-    std::vector<Light> lights;      // without their power
-    std::vector<float> cell_areas;  // [emitter], m2, of each of the cells that it is cut to
+    std::vector<Light> lights;               // without their power
+    std::vector<CellGrid> grids;             // [emitter] how it is cut
+    std::vector<std::uint32_t> cell_lights;  // [CellGrid::first + cell] into lights, or NO_LIGHT
 };
 
 /// The mean radiance, cd/m2, of a part of an emitter over which it varies: the parallelogram or

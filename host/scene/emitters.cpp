@@ -167,6 +167,12 @@ Light oriented_point(const Emitter& e, glm::vec2 u, bool back, double power) {
             float4(color * static_cast<float>(power / glm::pi<double>()), 0)};
 }
 
+// Lights from `first` on are `by` places further.
+void shift_lights(LightCells& cells, std::uint32_t first, std::uint32_t by) {
+    for (std::uint32_t& light : cells.lights)
+        if (light != NO_LIGHT && light >= first) light += by;
+}
+
 // Point i lies where (i + 1/2) / points of the power is reached, counting the sides of all emitters
 // in order; on a side, the points follow Roberts' R2 sequence.
 std::vector<Light> make_points(const std::vector<Emitter>& emitters, unsigned points) {
@@ -222,6 +228,19 @@ float power_of(const Light& light, const Bounds& bounds) {
     return 0;
 }
 
+// The cells of emitters, of their triangles, whose lights will be the scene's last.
+LightCells cells_in_scene(const Scene& scene, const std::vector<Emitter>& emitters,
+                          AreaLights made) {
+    LightCells cells;
+    cells.grid_of.assign(scene.triangle_count(), NO_GRID);
+    for (std::size_t i = 0; i < emitters.size(); ++i)
+        cells.grid_of[emitters[i].triangle] = static_cast<std::uint32_t>(i);
+    cells.grids = std::move(made.grids);
+    cells.lights = std::move(made.cell_lights);
+    shift_lights(cells, 0, static_cast<std::uint32_t>(scene.lights.size()));
+    return cells;
+}
+
 }  // namespace
 
 void add_emitters(Scene& scene, unsigned points) {
@@ -235,9 +254,7 @@ void add_emitters(Scene& scene, unsigned points) {
             [&scene](const Emitter& e, glm::dvec2 corner, glm::dvec2 u, glm::dvec2 v,
                      bool triangle) { return radiance_of_part(scene, e, corner, u, v, triangle); });
         lights = std::move(made.lights);
-        if (!lights.empty()) scene.cell_areas.assign(scene.triangle_count(), 0.f);
-        for (std::size_t i = 0; i < emitters.size() && !lights.empty(); ++i)
-            scene.cell_areas[emitters[i].triangle] = made.cell_areas[i];
+        if (!lights.empty()) scene.light_cells = cells_in_scene(scene, emitters, std::move(made));
     }
     scene.lights.insert(scene.lights.end(), lights.begin(), lights.end());
     const Bounds bounds = scene.bounds();
@@ -276,6 +293,7 @@ void add_headlight(Scene& scene, const View& view) {
     const auto own = static_cast<std::ptrdiff_t>(scene.light_names.size());
     scene.lights.insert(scene.lights.begin() + own, light);
     scene.light_names.emplace_back("headlight");
+    shift_lights(scene.light_cells, static_cast<std::uint32_t>(own), 1);
 }
 
 }  // namespace manylight

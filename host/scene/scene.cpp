@@ -172,7 +172,7 @@ Features find_features(const Scene& scene) {
         if (material.base_color.w > 0 || material.specular > 0)
             features.reflections |= (material.roughness < REFLECTING_ALPHA ||
                                      has_map(scene, i, MAP_METALLIC_ROUGHNESS)) &&
-                                    !scene.cell_areas.empty();
+                                    !scene.light_cells.empty();
     }
     features.smooth = !scene.vertex_normals.empty();
     features.textures = !scene.maps.empty();

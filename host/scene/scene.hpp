@@ -13,6 +13,7 @@
 #include "shared/camera.h"
 #include "shared/instance.h"
 #include "shared/light.h"
+#include "shared/light_cells.h"
 #include "shared/material.h"
 #include "shared/texture.h"
 
@@ -65,6 +66,16 @@ struct SharedMesh {
     Bounds bounds;
 };
 
+/// The cells that the area lights of a scene's triangles are cut to, each a light or without light.
+struct LightCells {
+    std::vector<std::uint32_t> grid_of;  // [triangle] into grids, or NO_GRID
+    std::vector<CellGrid> grids;
+    std::vector<std::uint32_t> lights;  // [CellGrid::first + cell] the scene's, or NO_LIGHT
+
+    /// There are no area lights.
+    [[nodiscard]] bool empty() const { return grids.empty(); }
+};
+
 struct Scene {
     std::string file;                // as the user named it
     std::vector<std::string> files;  // beside it, that it names
@@ -95,8 +106,7 @@ struct Scene {
     std::vector<std::uint32_t> alpha_of;
     std::vector<Light> lights;
     std::vector<std::string> light_names;  // likewise, of the file's own lights, which come first
-    std::vector<float> cell_areas;  // [triangle], m2, of each of the cells that its area light is
-                                    // cut to, 0 where it is none; empty if there are no area lights
+    LightCells light_cells;
     std::vector<View> views;
     std::vector<std::string> warnings;       // what the file holds and is not rendered
     std::optional<unsigned> emitter_points;  // the file's own wish, see load_scene()

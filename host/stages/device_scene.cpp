@@ -58,6 +58,20 @@ void set_textures(Device& device, const Scene& scene, Arguments& arguments) {
         .set("alpha_salt", 0u);
 }
 
+void set_cells(Device& device, const LightCells& cells, const LightTree* tree,
+               Arguments& arguments) {
+    std::vector<uint> lights = cells.lights;
+    if (tree) {
+        std::vector<uint> places(tree->order.size());
+        for (uint place = 0; place < places.size(); ++place) places[tree->order[place]] = place;
+        for (uint& light : lights)
+            if (light != NO_LIGHT) light = places[light];
+    }
+    arguments.set("grid_of", device.upload(cells.grid_of))
+        .set("grids", device.upload(cells.grids))
+        .set("cell_lights", device.upload(lights));
+}
+
 }  // namespace
 
 DeviceScene upload_scene(Device& device, const Scene& scene, const WideBvh& bvh,
@@ -88,7 +102,7 @@ DeviceScene upload_scene(Device& device, const Scene& scene, const WideBvh& bvh,
     if (features.textures || features.alpha) set_textures(device, scene, out.arguments);
     if (features.tangents) out.arguments.set("tangents", device.upload(scene.tangents));
     if (features.colors) out.arguments.set("colors", device.upload(scene.colors));
-    if (features.reflections) out.arguments.set("cell_areas", device.upload(scene.cell_areas));
+    if (features.reflections) set_cells(device, scene.light_cells, tree, out.arguments);
     out.traversal = {{"BVH_WIDTH", static_cast<int>(bvh.width)},
                      {"BVH_BLOCK", static_cast<int>(bvh.block)},
                      {"BVH_STACK", static_cast<int>(bvh.stack)},
@@ -149,7 +163,9 @@ std::size_t scene_bytes(const Scene& scene, const WideBvh& bvh, bool tree) {
                         bytes_of(scene.colors) + bytes_of(scene.tangents) +
                         bytes_of(scene.alpha_of) + bytes_of(scene.alpha_triangles);
     for (const auto& set : scene.coordinates) bytes += bytes_of(set);
-    if (find_features(scene).reflections) bytes += bytes_of(scene.cell_areas);
+    const LightCells& cells = scene.light_cells;
+    if (find_features(scene).reflections)
+        bytes += bytes_of(cells.grid_of) + bytes_of(cells.grids) + bytes_of(cells.lights);
     if (tree) bytes += 2 * sizeof(LightNode) * scene.lights.size();
     return bytes;
 }

@@ -48,11 +48,12 @@ bool judges(const Check& check, const Launched& kernel) {
     if (kernel.stage == "shadows") return stage == "contributions" || stage == "samples";
     if (kernel.stage == "probe") return kernel.kernel == "probe_" + stage;
     if (kernel.stage != stage) return false;
-    if (stage != "samples" || !kernel.file.starts_with("samplers/")) return true;
+    const bool of_sampler = stage == "samples" || stage == "reflections";
+    if (!of_sampler || !kernel.file.starts_with("samplers/")) return true;
     // "ris" of "samplers/ris/ris.cl": the folder is the sampler's, and of those that extend it.
     std::string folder = kernel.file.substr(9, kernel.file.find('/', 9) - 9);
     std::ranges::replace(folder, '_', '-');  // as names have it
-    const std::string own = "samples (" + folder;
+    const std::string own = fmt::format("{} ({}", stage, folder);
     return check.stage.starts_with(own + ")") || check.stage.starts_with(own + "-");
 }
 

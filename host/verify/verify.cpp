@@ -130,9 +130,9 @@ Buffer<Surface> Verifier::trace(const Tiles& tiles, const PixelSample& sample) {
 }
 
 std::vector<Check> Verifier::all() {
-    std::vector<Check> checks = {layout(),        random(),     gbuffer(false),
-                                 gbuffer(true),   clusters(),   representatives(),
-                                 contributions(), refinement(), accumulate()};
+    std::vector<Check> checks = {
+        layout(),          random(),        gbuffer(false), gbuffer(true), clusters(),
+        representatives(), contributions(), refinement(),   accumulate(),  cells()};
     for (Check& check : lighting()) checks.push_back(std::move(check));
     return checks;
 }
@@ -142,7 +142,7 @@ std::vector<Check> Verifier::lighting() {
     for (const Sampler& sampler : all_samplers())
         for (Check& check : checks_of(sampler).run(*this, sampler))
             checks.push_back(std::move(check));
-    checks.push_back(reflections());
+    for (Check& check : all_reflections()) checks.push_back(std::move(check));
     return checks;
 }
 

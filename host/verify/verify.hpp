@@ -75,7 +75,12 @@ class Verifier {
     /// one row by power.
     [[nodiscard]] Check pdf(std::string_view sampler, const Shares& shares, bool clustered);
     [[nodiscard]] Check samples(const Sampler& sampler);
-    [[nodiscard]] Check reflections();
+    /// Which cells of area lights points of the scene's emissive triangles are on.
+    [[nodiscard]] Check cells();
+    /// Beside the light samples of a sampler whose row has a closed form, or of no sampler.
+    [[nodiscard]] Check reflections(const Sampler* sampler = nullptr);
+    /// Beside no sampler, and beside each that has one.
+    [[nodiscard]] std::vector<Check> all_reflections();
     [[nodiscard]] Check accumulate();
 
     [[nodiscard]] Check seen_lights();
@@ -101,7 +106,7 @@ class Verifier {
         return sampler.tree ? tree_scene_ : device_scene_;
     }
 
-    /// Those of every sampler in the table, and reflections.
+    /// Those of every sampler in the table, and reflections beside them.
     [[nodiscard]] std::vector<Check> lighting();
 
     /// All of them.

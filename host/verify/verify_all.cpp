@@ -56,8 +56,8 @@ Verification verify_all(Device device, const VerifyOptions& options,
         // What a camera changes: where rays start, and which kernel traces them.
         Verifier flat = verifier(without_perspective(made.view));
         found.name += ", orthographic";
-        found.checks = {flat.gbuffer(false), flat.gbuffer(true), flat.contributions(),
-                        flat.reflections()};
+        found.checks = {flat.gbuffer(false), flat.gbuffer(true), flat.contributions()};
+        for (Check& check : flat.all_reflections()) found.checks.push_back(std::move(check));
         take(found);
         // Points that are no pixels: which kernels light them.
         if (made.name != "mirrors") continue;

@@ -59,7 +59,8 @@ static float lobe_density(float lobe, float alpha, float n_in) {
 
 // The light samples' share of what the lobe reflects of a point of a light's cell; stage
 // reflections has the rest. Veach's power heuristic for one light sample on the cell, which seen
-// from the surface has `solid_angle`, and one direction of the lobe.
+// from the surface has `solid_angle`, and one direction of the lobe; for n light samples it is that
+// of solid_angle / n.
 static float light_share(float density, float solid_angle) {
     const float ratio = density * solid_angle;
     return 1.0f / (1.0f + ratio * ratio);

@@ -53,9 +53,10 @@ static Receiver make_receiver(__global const Surface* surfaces, uint item,
 static float3 shadow_origin(const Receiver* r) { return r->position + r->horizon * r->offset; }
 
 // f Le G times the throughput, cd/m2, of a light (of its point u), without visibility and without
-// what is left to stage reflections; 0 if the light is behind the surface. `shadow` gets the
-// segment that has to be free.
-static float3 unshadowed(const Receiver* r, __global const Light* light, float2 u, Ray* shadow) {
+// what is left to stage reflections, where 1 / `weight` light samples are expected on the light; 0
+// if the light is behind the surface. `shadow` gets the segment that has to be free.
+static float3 unshadowed_weighed(const Receiver* r, __global const Light* light, float2 u,
+                                 float weight, Ray* shadow) {
     const LightSample s = sample_light(light, r->position, u);
     const float cosine = dot(r->normal, s.direction);
     if (cosine <= 0.0f || dot(r->horizon, s.direction) <= 0.0f) return (float3)(0.0f);
@@ -65,14 +66,19 @@ static float3 unshadowed(const Receiver* r, __global const Light* light, float2 
 #if HAS_DIRECTIONAL
     if (s.infinite) shadow->end = directional_end(light, shadow->origin);
 #endif
-    const float3 value =
-        brdf(r->material, r->normal, s.direction, r->outgoing, r->reflects ? s.solid_angle : 0.0f) *
-        s.emitted * cosine;
+    const float3 value = brdf(r->material, r->normal, s.direction, r->outgoing,
+                              r->reflects ? s.solid_angle * weight : 0.0f) *
+                         s.emitted * cosine;
 #if HAS_OUTGOING
     return value * r->throughput;
 #else
     return value;
 #endif
+}
+
+// The same where one light sample is on the light.
+static float3 unshadowed(const Receiver* r, __global const Light* light, float2 u, Ray* shadow) {
+    return unshadowed_weighed(r, light, u, 1.0f, shadow);
 }
 
 #endif

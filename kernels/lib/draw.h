@@ -41,6 +41,11 @@ static uint cdf_width(__global const uint* cdf, uint light) {
     return cdf[light] - (light == 0u ? 0u : cdf[light - 1u]);
 }
 
+static float cdf_probability(__global const uint* cdf, uint light_count, uint light) {
+    const uint total = cdf[light_count - 1u];
+    return total == 0u ? 0.0f : (float)cdf_width(cdf, light) / (float)total;
+}
+
 static Choice draw_from_cdf(__global const uint* cdf, Draw draw) {
     Choice choice = {0u, 0.0f};
     const uint total = cdf[draw.light_count - 1u];

@@ -9,6 +9,9 @@
 // its type, too, and begin_pixel(), which fills it: its arguments are choose_light()'s for the
 // first of them, but for the random bits, and a pointer to the state, which choose_light() then
 // gets, too.
+//
+// One whose light samples have a probability in closed form defines CLOSED_FORM, and
+// light_probability() as lib/reflected.h has it, which it includes in the end.
 #include "lib/direct.h"
 #include "lib/random.h"
 #include "lib/rays.h"
@@ -18,6 +21,13 @@
 #define STATE_ARGUMENT , &state
 #else
 #define STATE_ARGUMENT
+#endif
+
+// 1 / the number of light samples that stage reflections expects on the light of a choice.
+#ifdef CLOSED_FORM
+#define SHARE_WEIGHT(choice) (choice).weight
+#else
+#define SHARE_WEIGHT(choice) 1.0f
 #endif
 
 // Light samples first_sample to end_sample, at most 16, of sample_count: packet `item` of the rays,
@@ -60,7 +70,8 @@ KERNEL void samples_draw(Tiles tiles, VIEW_PARAMETERS, __global const Surface* s
             }
             const float2 u = (float2)(unit_float(bits.y), unit_float(bits.z));
             Ray shadow;
-            last_value = unshadowed(&receiver, lights + choice.light, u, &shadow);
+            last_value = unshadowed_weighed(&receiver, lights + choice.light, u,
+                                            SHARE_WEIGHT(choice), &shadow);
             last = choice.light;
             lit = any(last_value != 0.0f);
             if (!lit) continue;

@@ -8,8 +8,10 @@
 #include "shared/contribution.h"
 #include "shared/instance.h"
 #include "shared/light.h"
+#include "shared/light_cells.h"
 #include "shared/light_tree.h"
 #include "shared/material.h"
+#include "shared/reflected.h"
 #include "shared/surface.h"
 #include "shared/texture.h"
 #include "shared/tiles.h"
@@ -32,6 +34,8 @@
     X(Instance, to_world) X(Instance, to_object) X(Instance, first) X(Instance, stored)            \
     X(Instance, mesh) X(Instance, mirrored) X(Instance, root)                                      \
     X(Light, position) X(Light, axis) X(Light, edge) X(Light, emission)                            \
+    X(CellGrid, u) X(CellGrid, v) X(CellGrid, area) X(CellGrid, first) X(CellGrid, columns)       \
+    X(CellGrid, rows) X(Reflected, emission) X(Reflected, fresnel) X(Reflected, light)             \
     X(Tiles, width) X(Tiles, height) X(Tiles, size) X(Tiles, columns) X(Tiles, first)              \
     X(Tiles, count)                                                                                \
     X(Region, x) X(Region, y) X(Region, size) X(Region, level) X(Region, first_sibling)            \

@@ -98,4 +98,11 @@ std::optional<double> ContributionCached::probability(const Point& point, std::s
     return rows_of(point, item).probability(light);
 }
 
+std::optional<ExpectedCount> ContributionCached::expected_count(const Point& point,
+                                                                std::size_t item, uint light,
+                                                                uint sample_count) const {
+    const Rows rows = rows_of(point, item);
+    return ExpectedCount{{{1, rows.probability(light) * sample_count}}, rows.doubtful};
+}
+
 }  // namespace manylight::reference

@@ -45,6 +45,9 @@ class ContributionCached : public OneLight {
     [[nodiscard]] Choice choose(const Point& point, const Draw& draw) const override;
     [[nodiscard]] std::optional<double> probability(const Point& point, std::size_t item,
                                                     uint light) const override;
+    [[nodiscard]] std::optional<ExpectedCount> expected_count(const Point& point, std::size_t item,
+                                                              uint light,
+                                                              uint sample_count) const override;
 
   private:
     struct Rows {

@@ -178,11 +178,38 @@ Choice StochasticLightcuts::choose(const Point& point, const Draw& draw) const {
 
 std::optional<double> StochasticLightcuts::probability(const Point& point, std::size_t /*item*/,
                                                        uint light) const {
+    return probability_from(top_of(tree_), light, point.surface);
+}
+
+// A round's cut, its samples one by one: each draws from the node of its place.
+std::optional<ExpectedCount> StochasticLightcuts::expected_count(const Point& point,
+                                                                 std::size_t /*item*/, uint light,
+                                                                 uint sample_count) const {
+    ExpectedCount out;
+    for (uint first = 0; first < sample_count; first += MOST_CUT_NODES) {
+        const uint size = std::min<uint>(sample_count - first, MOST_CUT_NODES);
+        const LightCut cut = light_cut(tree_, point.surface, std::min(size, cut_nodes_));
+        double expected = 0;
+        for (uint sample = 0; sample < size && !cut.nodes.empty(); ++sample) {
+            const std::size_t place = sample * cut.nodes.size() / size;
+            expected += probability_from(cut.nodes[place], light, point.surface);
+        }
+        out.doubtful = out.doubtful || cut.doubtful;
+        out.rounds.push_back({double(size) / sample_count, expected * sample_count / size});
+    }
+    return out;
+}
+
+double StochasticLightcuts::probability_from(uint node, uint light, const Surface& surface) const {
     const auto place = static_cast<uint>(std::ranges::find(tree_.order, light) -  //
                                          tree_.order.begin());
+    const auto holds = [&](const LightNode& n) {
+        return place >= n.first && place < n.first + n.count;
+    };
+    if (node != BOTH_ROOTS && !holds(tree_.nodes[node])) return 0;
     double probability = 1;
-    for (uint node = top_of(tree_); !is_leaf(tree_, node);) {
-        const std::optional<double> p = left_probability(tree_, node, point.surface);
+    while (!is_leaf(tree_, node)) {
+        const std::optional<double> p = left_probability(tree_, node, surface);
         if (!p) return 0;
         const auto [left, right] = children_of(tree_, node);
         const bool go_left = place < tree_.nodes[right].first;

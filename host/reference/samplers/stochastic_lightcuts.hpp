@@ -35,7 +35,14 @@ class StochasticLightcuts : public OneLight {
     [[nodiscard]] std::optional<double> probability(const Point& point, std::size_t item,
                                                     uint light) const override;
 
+    [[nodiscard]] std::optional<ExpectedCount> expected_count(const Point& point, std::size_t item,
+                                                              uint light,
+                                                              uint sample_count) const override;
+
   private:
+    // The probability that a draw from a node that holds a light is of it.
+    [[nodiscard]] double probability_from(uint node, uint light, const Surface& surface) const;
+
     const LightTree& tree_;
     uint cut_nodes_;
 };

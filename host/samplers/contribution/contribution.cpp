@@ -64,6 +64,7 @@ Sampler sampler_contribution() {
             .color = "#ff7f0e",
             .biased = true,
             .clusters = true,
+            .closed_form = "samplers/contribution/contribution.cl",
             .footprint = ByContribution::footprint,
             .make = [](const SamplerContext& context) -> std::unique_ptr<LightSampler> {
                 return std::make_unique<ByContribution>(context, paper_shares, false);
@@ -75,6 +76,7 @@ Sampler sampler_contribution_defensive() {
             .summary = "the paper's, mixed with unshadowed contribution and power",
             .color = "#e377c2",
             .clusters = true,
+            .closed_form = "samplers/contribution/contribution.cl",
             .footprint = ByContribution::footprint,
             .make = [](const SamplerContext& context) -> std::unique_ptr<LightSampler> {
                 return std::make_unique<ByContribution>(context, defensive_shares, true);

@@ -39,6 +39,7 @@ Sampler sampler_contribution_cached() {
             .parameters = {{"rows", 4, 1, MOST_NEIGHBOURS + 1, "clusters that a pixel draws from",
                             true},
                            {"angle", 30, 0, 180, "between their normals at most, degrees"}},
+            .closed_form = "samplers/contribution_cached/contribution_cached.cl",
             .footprint = ContributionCached::footprint,
             .make = [](const SamplerContext& context) -> std::unique_ptr<LightSampler> {
                 return std::make_unique<ContributionCached>(context);

@@ -8,6 +8,7 @@ Sampler sampler_lighttree() {
             .summary = "down a light tree by bounds on distance, angles and power (pbrt-v4's)",
             .color = "#1f77b4",
             .tree = true,
+            .closed_form = "samplers/lighttree/lighttree.cl",
             .footprint = OneLight::footprint,
             .make = [](const SamplerContext& context) -> std::unique_ptr<LightSampler> {
                 return std::make_unique<OneLight>(context, "samplers/lighttree/lighttree.cl");

@@ -15,8 +15,7 @@ class OneLight : public LightSampler {
     bool draw(const Tiles& tiles, const PixelSample& sample, uint light_samples,
               const Buffer<Surface>& surfaces, Estimates& estimates, const Sink& sink) override;
 
-    /// The buffers that it draws from, by their names in the kernel.
-    [[nodiscard]] const Arguments& tables() const { return tables_; }
+    [[nodiscard]] const Arguments& tables() const override { return tables_; }
 
     [[nodiscard]] static Footprint footprint(const SamplerLoad& load);
 

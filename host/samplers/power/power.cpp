@@ -20,6 +20,7 @@ Sampler sampler_power() {
     return {.name = "power",
             .summary = "lights by their power",
             .color = "#9467bd",
+            .closed_form = "samplers/power/power.cl",
             .footprint = ByPower::footprint,
             .make = [](const SamplerContext& context) -> std::unique_ptr<LightSampler> {
                 return std::make_unique<ByPower>(context, "samplers/power/power.cl");

@@ -18,6 +18,7 @@ Sampler sampler_stochastic_lightcuts() {
         .color = "#17becf",
         .tree = true,
         .parameters = {{"cut", MOST_CUT_NODES, 1, MOST_CUT_NODES, "nodes of a cut, at most", true}},
+        .closed_form = "samplers/stochastic_lightcuts/stochastic_lightcuts.cl",
         .footprint = OneLight::footprint,
         .make = [](const SamplerContext& context) -> std::unique_ptr<LightSampler> {
             return std::make_unique<StochasticLightcuts>(context);

@@ -13,6 +13,7 @@
     , __global const uint *cdf, __global const uint *item_rows, __global const uint *neighbours, \
         __global const float4 *places, uint most_rows
 #define SAMPLER_ARGUMENTS , cdf, item_rows, neighbours, places, most_rows
+#define CLOSED_FORM
 
 static uint row_total(__global const uint* cdf, uint row, uint light_count) {
     return cdf[(ulong)row * light_count + light_count - 1u];
@@ -41,6 +42,17 @@ static void begin_pixel(const Receiver* receiver, __global const Light* lights, 
     }
 }
 
+// Of all rows, where there are any: the own row has as many light samples as the others together.
+static float mixed_probability(const Nearest* rows, __global const uint* cdf, uint light_count,
+                               uint light) {
+    const uint others = rows->count - 1u;
+    float probability = 0.0f;
+    for (uint k = others; k > 0u; --k)
+        probability += probability_in(cdf, rows->rows[k], light_count, light);
+    const float own = probability_in(cdf, rows->rows[0], light_count, light);
+    return others > 0u ? 0.5f * (own + probability / (float)others) : own;
+}
+
 // A light of one of the rows, its own for half of all light samples, by the probability that it has
 // of all of them: the balance heuristic for one sample.
 static Choice choose_light(const Receiver* receiver, __global const Light* lights, Draw draw,
@@ -54,13 +66,18 @@ static Choice choose_light(const Receiver* receiver, __global const Light* light
     const uint place = mul_hi(draw.bits.w, 2u * others);
     const uint drawn = rows->rows[place < others || others == 0u ? 0u : place - others + 1u];
     choice = draw_from_cdf(cdf + (ulong)drawn * draw.light_count, draw);
-    float probability = 0.0f;
-    for (uint k = others; k > 0u; --k)
-        probability += probability_in(cdf, rows->rows[k], draw.light_count, choice.light);
-    const float own = probability_in(cdf, rows->rows[0], draw.light_count, choice.light);
-    probability = others > 0u ? 0.5f * (own + probability / (float)others) : own;
+    const float probability = mixed_probability(rows, cdf, draw.light_count, choice.light);
     choice.weight = 1.0f / (probability * (float)draw.sample_count);
     return choice;
 }
 
+static float light_probability(const Receiver* receiver, __global const Light* lights, Draw draw,
+                               uint light, __global const uint* cdf, __global const uint* item_rows,
+                               __global const uint* neighbours, __global const float4* places,
+                               uint most_rows, const Nearest* rows) {
+    return rows->count == 0u ? 0.0f : mixed_probability(rows, cdf, draw.light_count, light);
+}
+
 #include "lib/samples.h"
+
+#include "lib/reflected.h"

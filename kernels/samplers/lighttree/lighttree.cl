@@ -7,6 +7,7 @@
 
 #define SAMPLER_PARAMETERS , __global const LightNode *nodes, uint root_count, uint second_root
 #define SAMPLER_ARGUMENTS , nodes, root_count, second_root
+#define CLOSED_FORM
 
 static Choice choose_light(const Receiver* receiver, __global const Light* lights, Draw draw,
                            __global const LightNode* nodes, uint root_count, uint second_root) {
@@ -35,4 +36,25 @@ static Choice choose_light(const Receiver* receiver, __global const Light* light
     return choice;
 }
 
+// The product of the choices on the way down to the light's leaf.
+static float light_probability(const Receiver* receiver, __global const Light* lights, Draw draw,
+                               uint light, __global const LightNode* nodes, uint root_count,
+                               uint second_root) {
+    float probability = 1.0f;
+    uint node = 0u;
+    for (uint step = root_count > 1u ? 0u : 1u; step == 0u || nodes[node].count > 1u; ++step) {
+        const uint left = step == 0u ? 0u : node + 1u;
+        const uint right = step == 0u ? second_root : node + 2u * nodes[node + 1u].count;
+        const float a = node_importance(nodes + left, receiver);
+        const float b = node_importance(nodes + right, receiver);
+        if (!(a + b > 0.0f)) return 0.0f;
+        const bool go_left = light < nodes[right].first;
+        probability *= (go_left ? a : b) / (a + b);
+        node = go_left ? left : right;
+    }
+    return probability;
+}
+
 #include "lib/samples.h"
+
+#include "lib/reflected.h"

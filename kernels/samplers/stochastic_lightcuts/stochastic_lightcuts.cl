@@ -25,6 +25,8 @@ typedef struct Cut {
 #define SAMPLER_PARAMETERS \
     , __global const LightNode *nodes, uint root_count, uint second_root, uint cut_nodes
 #define SAMPLER_ARGUMENTS , nodes, root_count, second_root, cut_nodes
+#define CLOSED_FORM
+#define SAMPLE_ROUND MOST_CUT_NODES
 
 static bool is_leaf(__global const LightNode* nodes, uint node) {
     return node != BOTH_ROOTS && nodes[node].count == 1u;
@@ -148,6 +150,13 @@ static float2 root_probabilities(__global const LightNode* nodes, uint second_ro
     return parts_of(node_bound(nodes, r), node_bound(nodes + second_root, r), (float2)(0.0f));
 }
 
+static float2 probabilities_below(__global const LightNode* nodes, uint node, uint second_root,
+                                  const Receiver* r) {
+    if (node == BOTH_ROOTS) return root_probabilities(nodes, second_root, r);
+    return child_probabilities(nodes + left_child(node),
+                               nodes + right_child(nodes, node, second_root), r);
+}
+
 // Draw i of n from a node.
 static Choice descend(const Receiver* receiver, __global const LightNode* nodes, uint second_root,
                       uint node, uint i, uint n, uint4 bits) {
@@ -157,9 +166,7 @@ static Choice descend(const Receiver* receiver, __global const LightNode* nodes,
     for (uint step = 0u; !is_leaf(nodes, node); ++step) {
         const uint left = left_child(node);
         const uint right = right_child(nodes, node, second_root);
-        const float2 p = node == BOTH_ROOTS
-                             ? root_probabilities(nodes, second_root, receiver)
-                             : child_probabilities(nodes + left, nodes + right, receiver);
+        const float2 p = probabilities_below(nodes, node, second_root, receiver);
         if (!(p.x + p.y > 0.0f)) return none;
         // Where less than one sample is expected strata have no use any more: fresh digits.
         if (probability * (float)n < 1.0f) u = unit_float(step_bits(bits.w, step));
@@ -173,21 +180,52 @@ static Choice descend(const Receiver* receiver, __global const LightNode* nodes,
     return choice;
 }
 
+// A round's samples go to the nodes in order, to each as many as to another, or one more: the first
+// of those of a place.
+static uint first_of_place(const Cut* cut, uint at, uint size) {
+    return (at * size + cut->count - 1u) / cut->count;
+}
+
 static Choice choose_light(const Receiver* receiver, __global const Light* lights, Draw draw,
                            __global const LightNode* nodes, uint root_count, uint second_root,
                            uint cut_nodes, const Cut* cut) {
     Choice choice = {0u, 0.0f};
     if (cut->count == 0u) return choice;
-    // The round's samples go to the nodes in order, to each as many as to another, or one more.
     const uint size = round_size(draw);
     const uint sample = draw.sample - round_first(draw.sample);
     const uint at = sample * cut->count / size;
-    const uint begin = (at * size + cut->count - 1u) / cut->count;
-    const uint end = ((at + 1u) * size + cut->count - 1u) / cut->count;
-    choice = descend(receiver, nodes, second_root, cut->nodes[at], sample - begin, end - begin,
-                     draw.bits);
+    const uint begin = first_of_place(cut, at, size);
+    choice = descend(receiver, nodes, second_root, cut->nodes[at], sample - begin,
+                     first_of_place(cut, at + 1u, size) - begin, draw.bits);
     choice.weight *= (float)size / (float)draw.sample_count;
     return choice;
 }
 
+static bool holds(__global const LightNode* nodes, uint node, uint light) {
+    return node == BOTH_ROOTS ||
+           (light >= nodes[node].first && light < nodes[node].first + nodes[node].count);
+}
+
+// That of its node's draws on the way down to the light, by the node's part of the round's.
+static float light_probability(const Receiver* receiver, __global const Light* lights, Draw draw,
+                               uint light, __global const LightNode* nodes, uint root_count,
+                               uint second_root, uint cut_nodes, const Cut* cut) {
+    uint at = 0u;
+    while (at < cut->count && !holds(nodes, cut->nodes[at], light)) ++at;
+    if (at == cut->count) return 0.0f;
+    float probability = 1.0f;
+    for (uint node = cut->nodes[at]; !is_leaf(nodes, node);) {
+        const uint right = right_child(nodes, node, second_root);
+        const float2 p = probabilities_below(nodes, node, second_root, receiver);
+        const bool go_left = light < nodes[right].first;
+        probability *= go_left ? p.x : p.y;
+        node = go_left ? left_child(node) : right;
+    }
+    const uint size = round_size(draw);
+    const uint draws = first_of_place(cut, at + 1u, size) - first_of_place(cut, at, size);
+    return probability * (float)draws / (float)size;
+}
+
 #include "lib/samples.h"
+
+#include "lib/reflected.h"

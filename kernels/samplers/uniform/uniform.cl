@@ -5,6 +5,7 @@
 
 #define SAMPLER_PARAMETERS
 #define SAMPLER_ARGUMENTS
+#define CLOSED_FORM
 
 static Choice choose_light(const Receiver* receiver, __global const Light* lights, Draw draw) {
     Choice choice = {
@@ -13,4 +14,11 @@ static Choice choose_light(const Receiver* receiver, __global const Light* light
     return choice;
 }
 
+static float light_probability(const Receiver* receiver, __global const Light* lights, Draw draw,
+                               uint light) {
+    return 1.0f / (float)draw.light_count;
+}
+
 #include "lib/samples.h"
+
+#include "lib/reflected.h"
