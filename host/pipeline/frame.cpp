@@ -110,6 +110,7 @@ void Frame::make_tree() {
     fill_tree(tree_, stages_->scene);
 }
 
+// Items of a batch.
 std::size_t Frame::items() const {
     return std::size_t{plan_.tiles_per_batch} * options_.tile_size() * options_.tile_size();
 }

@@ -58,18 +58,11 @@ void set_textures(Device& device, const Scene& scene, Arguments& arguments) {
         .set("alpha_salt", 0u);
 }
 
-void set_cells(Device& device, const LightCells& cells, const LightTree* tree,
-               Arguments& arguments) {
-    std::vector<uint> lights = cells.lights;
-    if (tree) {
-        std::vector<uint> places(tree->order.size());
-        for (uint place = 0; place < places.size(); ++place) places[tree->order[place]] = place;
-        for (uint& light : lights)
-            if (light != NO_LIGHT) light = places[light];
-    }
-    arguments.set("grid_of", device.upload(cells.grid_of))
+void set_cells(Device& device, const LightCells& cells, DeviceScene& out) {
+    out.cell_lights = device.upload(cells.lights);
+    out.arguments.set("grid_of", device.upload(cells.grid_of))
         .set("grids", device.upload(cells.grids))
-        .set("cell_lights", device.upload(lights));
+        .set("cell_lights", out.cell_lights);
 }
 
 }  // namespace
@@ -102,7 +95,7 @@ DeviceScene upload_scene(Device& device, const Scene& scene, const WideBvh& bvh,
     if (features.textures || features.alpha) set_textures(device, scene, out.arguments);
     if (features.tangents) out.arguments.set("tangents", device.upload(scene.tangents));
     if (features.colors) out.arguments.set("colors", device.upload(scene.colors));
-    if (features.reflections) set_cells(device, scene.light_cells, tree, out.arguments);
+    if (features.reflections) set_cells(device, scene.light_cells, out);
     out.traversal = {{"BVH_WIDTH", static_cast<int>(bvh.width)},
                      {"BVH_BLOCK", static_cast<int>(bvh.block)},
                      {"BVH_STACK", static_cast<int>(bvh.stack)},
@@ -125,6 +118,7 @@ DeviceScene upload_scene(Device& device, const Scene& scene, const WideBvh& bvh,
 
 DeviceScene with_lights(Device& device, DeviceScene scene, const std::vector<Light>& lights,
                         const LightTree* tree) {
+    scene.cell_lights = {};
     set_lights(device, lights, tree, scene);
     scene.shading["HAS_REFLECTIONS"] = 0;
     return scene;
@@ -147,6 +141,13 @@ void reserve_tree(Device& device, const std::vector<Light>& lights, DeviceScene&
 void fill_tree(const LightTree& tree, DeviceScene& scene) {
     scene.lights.upload(tree.lights);
     scene.nodes.upload(tree.nodes);
+    if (scene.cell_lights.size() == 0) return;
+    std::vector<uint> places(tree.order.size());
+    for (uint place = 0; place < places.size(); ++place) places[tree.order[place]] = place;
+    std::vector<uint> cells = scene.cell_lights.download();
+    for (uint& light : cells)
+        if (light != NO_LIGHT) light = places[light];
+    scene.cell_lights.upload(cells);
 }
 
 void set_outgoing(DeviceScene& scene, const Buffer<Outgoing>& outgoing) {

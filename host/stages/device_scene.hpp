@@ -19,6 +19,7 @@ struct DeviceScene {
     uint light_count = 0;
     Buffer<Light> lights;
     Buffer<LightNode> nodes;     // of the light trees, if any
+    Buffer<uint> cell_lights;    // of Scene::light_cells, where rays of stage reflections need them
     Buffer<Material> materials;  // the scene's, and behind them those of points (see GBufferStage)
     uint own_materials = 0;      // index of the first of these
     bool varies_materials = false;
