@@ -258,4 +258,23 @@ TEST(light_tree, degenerate_sets) {
     EXPECT_EQ(build_light_tree(dark).nodes.size(), 19u);
 }
 
+// Lights that are seen are the left side of a root, whatever their places are.
+TEST(light_tree, seen_lights_are_apart) {
+    std::vector<Light> lights;
+    std::vector<bool> seen;
+    for (int i = 0; i < 100; ++i) {
+        lights.push_back(point({0.1f * static_cast<float>(i), 1, 0}, 1 + static_cast<float>(i)));
+        seen.push_back(i % 7 == 3);
+    }
+    const auto count = static_cast<uint>(std::ranges::count(seen, true));
+    const LightTree tree = build_light_tree(lights, seen);
+    EXPECT_EQ(tree.nodes[1].count, count);
+    for (std::size_t place = 0; place < lights.size(); ++place)
+        EXPECT_EQ(seen[tree.order[place]], place < count) << place;
+    const LightTree usual = build_light_tree(lights);
+    for (const bool all : {false, true})
+        EXPECT_EQ(build_light_tree(lights, std::vector<bool>(lights.size(), all)).order,
+                  usual.order);
+}
+
 }  // namespace manylight
