@@ -43,6 +43,7 @@ void expect_footprint(const Sampler& sampler, Device& device, const DeviceScene&
     const std::unique_ptr<LightSampler> made =
         sampler.make({device, uploaded, scene.scene.lights, tiles, clusters.tile_size, 64,
                       light_samples, clusters, parameters});
+    (void)made->find_seen_lights(1);
     EXPECT_LE(use->most, planned);
     EXPECT_GE(static_cast<double>(use->most + need.image),
               0.9 * static_cast<double>(planned) - 4096);

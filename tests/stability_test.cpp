@@ -206,10 +206,10 @@ bool page_tells_of_negative_values(std::string_view sampler) {
 }
 
 // Where sampler adaptive is worse than allowed, and how much; docs/atlas.md says why.
-const std::map<std::string, double, std::less<>> exceptions = {
-    {"glossy --roughness 0.03", 1.8}, {"hidden --visible 0.01", 30},
-    {"hidden --visible 0.001", 250},  {"stacks --stack 64", 7},
-    {"stacks --stack 512", 5},        {"1 light sample", 3}};
+const std::map<std::string, double, std::less<>> exceptions = {{"glossy --roughness 0.03", 1.8},
+                                                               {"stacks --stack 64", 7},
+                                                               {"stacks --stack 512", 5},
+                                                               {"1 light sample", 3}};
 constexpr double most_ratio = 1.2;  // of adaptive's error to the best other's with as many rays
 
 constexpr std::size_t few_lights = 200;
@@ -247,6 +247,13 @@ Verdict measure(const Point& point, const Sampler& sampler, const Image& truth, 
     return out;
 }
 
+// Whether a few images are black, or nearly so: in a vault, what does not know visibility hardly
+// ever draws a lamp that shines.
+bool hardly_lights(const Point& point, const Sampler& sampler) {
+    return point.name.starts_with("vault") && !sampler.clusters && !sampler.own_rays &&
+           sampler.name != "adaptive";
+}
+
 // Returns how unlikely the paper's sampler is, were it unbiased.
 double judge(const Point& point) {
     SCOPED_TRACE(point.name);
@@ -264,7 +271,7 @@ double judge(const Point& point) {
         SCOPED_TRACE(sampler.name);
         const Verdict v = measure(point, sampler, truth, own_error, expected);
         if (sampler.name == "contribution") papers = v.probability;
-        if (!sampler.biased) {
+        if (!sampler.biased && !hardly_lights(point, sampler)) {
             EXPECT_GT(v.probability, 1e-6);
         }
         if (v.slope && !sampler.biased) {
