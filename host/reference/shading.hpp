@@ -97,8 +97,7 @@ struct Unshadowed {
                                     const Viewer& viewer, const Light& light, const glm::dvec2& u);
 
 [[nodiscard]] inline bool has_area(const Light& light) {
-    const auto kind = static_cast<LightKind>(light.position.w);
-    return kind == LIGHT_TRIANGLE || kind == LIGHT_QUAD;
+    return light_has(static_cast<uint>(light.position.w), TRAIT_AREA);
 }
 
 /// By how much rounding to single precision can change the value of unshadowed(): the changes under
