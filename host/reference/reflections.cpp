@@ -2,8 +2,8 @@
 #include "reference/reflections.hpp"
 
 #include <algorithm>
-#include <glm/gtc/constants.hpp>
 
+#include "reference/material/ggx.hpp"
 #include "reference/random.hpp"
 #include "reference/textures.hpp"
 #include "reference/triangle.hpp"
@@ -35,25 +35,6 @@ glm::dvec3 reflected(const Scene& scene, const Viewer& viewer, const Surface& su
 }
 
 }  // namespace
-
-glm::dvec3 sample_lobe(double alpha, const glm::dvec3& normal, const glm::dvec3& wo,
-                       const glm::dvec2& u) {
-    // A frame about the normal: Duff et al., "Building an Orthonormal Basis, Revisited" (JCGT 6:1,
-    // 2017).
-    const glm::dvec3& n = normal;
-    const double sign = std::copysign(1.0, n.z);
-    const double a = -1 / (sign + n.z);
-    const glm::dmat3 frame(glm::dvec3(1 + sign * n.x * n.x * a, sign * n.x * n.y * a, -sign * n.x),
-                           glm::dvec3(n.x * n.y * a, sign + n.y * n.y * a, -n.y), n);
-    const glm::dvec3 stretch(alpha, alpha, 1);
-    const glm::dvec3 viewer = glm::normalize(stretch * (glm::transpose(frame) * wo));
-    const double height = glm::mix(1.0, -viewer.z, u.y);  // of the cap of directions to the viewer
-    const double radius = std::sqrt(std::max(1 - height * height, 0.0));
-    const double phi = 2 * glm::pi<double>() * u.x;
-    const glm::dvec3 half =
-        viewer + glm::dvec3(radius * std::cos(phi), radius * std::sin(phi), height);
-    return -glm::reflect(wo, glm::normalize(frame * (stretch * half)));
-}
 
 glm::dvec2 reflection_point(uint pixel, uint pixel_sample, uint seed) {
     const auto scramble = random_bits(pixel, 0, 0xfffffffcu, seed);
