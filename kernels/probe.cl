@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // What a driver makes of shared structs and random numbers; used by verify and the tests only.
-#include "lib/light_cells.h"
+#include "lights/cells.h"
 #include "lib/random.h"
 #include "shared/layout.h"
 

@@ -2,43 +2,16 @@
 // Stage reflections: area lights as glossy surfaces reflect them, by one ray per pixel sample that
 // is drawn from the GGX lobe. It shares the lobe's light with the light samples by the power
 // heuristic (multiple importance sampling: Veach and Guibas, "Optimally Combining Sampling
-// Techniques for Monte Carlo Rendering", 1995); see lobe_share() in lib/brdf.h, and
+// Techniques for Monte Carlo Rendering", 1995); see lobe_share() in material/ggx.h, and
 // lib/reflected.h, which adds what is found here.
 #include "lib/direct.h"
-#include "lib/light_cells.h"
+#include "lights/cells.h"
 #include "lib/random.h"
 #include "lib/textures.h"
 #include "lib/tiles.h"
 #include "shared/reflected.h"
 
 #if HAS_REFLECTIONS && HAS_GGX
-
-// Unit vectors that make a right-handed frame with unit vector n (Duff et al., "Building an
-// Orthonormal Basis, Revisited", JCGT 6:1, 2017).
-static void make_frame(float3 n, float3* tangent, float3* bitangent) {
-    const float sign = copysign(1.0f, n.z);
-    const float a = -1.0f / (sign + n.z);
-    const float b = n.x * n.y * a;
-    *tangent = (float3)(1.0f + sign * n.x * n.x * a, sign * b, -sign * n.x);
-    *bitangent = (float3)(b, sign + n.y * n.y * a, -n.y);
-}
-
-// A direction of the lobe's light, unit, with density lobe_density(): wo mirrored at a normal that
-// is drawn from those of the microfacets that wo sees (Heitz, "Sampling the GGX Distribution of
-// Visible Normals", JCGT 7:4, 2018), as a point of a spherical cap (Dupuy and Benyoub, "Sampling
-// Visible GGX Normals with Spherical Caps", 2023).
-static float3 sample_lobe(float alpha, float3 n, float3 wo, float2 u) {
-    float3 x, y;
-    make_frame(n, &x, &y);
-    const float3 stretched =
-        normalize((float3)(alpha * dot(wo, x), alpha * dot(wo, y), dot(wo, n)));
-    const float z = (1.0f - u.y) * (1.0f + stretched.z) - stretched.z;
-    const float sine = sqrt(max(1.0f - z * z, 0.0f));
-    const float phi = 2.0f * M_PI_F * u.x;
-    const float3 cap = stretched + (float3)(sine * cos(phi), sine * sin(phi), z);
-    const float3 h = normalize(x * (alpha * cap.x) + y * (alpha * cap.y) + n * cap.z);
-    return normalize(h * (2.0f * dot(wo, h)) - wo);
-}
 
 #if HAS_TEXTURES
 #define MAP_PARAMETERS , TEXTURE_PARAMETERS

@@ -366,9 +366,12 @@ TEST(frame, kernels_are_compiled_for_the_scene_at_hand) {
             if (key.starts_with("HAS_") && value) set += key.substr(4) + " ";
         return set;
     };
-    EXPECT_EQ(defines("points"), "POINT ");
-    EXPECT_EQ(defines("oriented"), "EMISSION ORIENTED ");
-    EXPECT_EQ(defines("kinds"), "DIRECTIONAL EMISSION GGX POINT QUAD SMOOTH SPOT TRIANGLE ");
+    EXPECT_EQ(defines("points"), "EVEN POINT RANGE ");
+    EXPECT_EQ(defines("oriented"), "COSINE EMISSION ORIENTED ");
+    EXPECT_EQ(
+        defines("kinds"),
+        "AREA CONE COSINE DIRECTIONAL EMISSION EVEN GGX INFINITE POINT QUAD RANGE SMOOTH SPOT "
+        "TRIANGLE ");
 }
 
 }  // namespace manylight

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "reference/reflections.hpp"
+#include "reference/material/ggx.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -5,6 +5,7 @@
 #include <optional>
 #include <random>
 
+#include "lights/lights.hpp"
 #include "reference/gbuffer.hpp"
 
 namespace manylight {
@@ -17,25 +18,19 @@ struct Segment {
 
 // The shadow ray from a surface to a light (to an area light's centroid), if they face each other.
 std::optional<Segment> segment_to(const Light& light, const Surface& surface) {
-    const auto kind = static_cast<int>(light.position.w);
-    const bool area = kind == LIGHT_TRIANGLE || kind == LIGHT_QUAD;
     const glm::vec3 normal(surface.horizon);
     Segment s{glm::vec3(surface.position) + normal * surface.horizon.w, {}, 1};
-    glm::vec3 target(light.position);
-    glm::vec3 facing(0);
-    if (area) {
-        const float centroid = kind == LIGHT_TRIANGLE ? 1.f / 3 : 0.5f;
-        target += (glm::vec3(light.axis) + glm::vec3(light.edge)) * centroid;
-        facing = glm::normalize(glm::cross(glm::vec3(light.axis), glm::vec3(light.edge)));
-    } else if (kind == LIGHT_ORIENTED) {
-        facing = light.axis;
-    }
-    if (area || kind == LIGHT_ORIENTED) {
+    glm::vec3 target = extent_of<float>(light).centre;
+    if (light_has(light, TRAIT_COSINE)) {
+        const glm::vec3 facing = light_has(light, TRAIT_AREA)
+                                     ? glm::vec3(glm::normalize(area_normal(light)))
+                                     : glm::vec3(light.axis);
         if (glm::dot(facing, s.origin - target) <= 0) return {};
         target += facing * light.edge.w;
     }
-    s.direction = kind == LIGHT_DIRECTIONAL ? -glm::vec3(light.axis) : target - s.origin;
-    if (kind == LIGHT_DIRECTIONAL) s.end = std::numeric_limits<float>::infinity();
+    const bool infinite = light_has(light, TRAIT_INFINITE);
+    s.direction = infinite ? target : target - s.origin;
+    if (infinite) s.end = std::numeric_limits<float>::infinity();
     if (glm::dot(normal, s.direction) <= 0) return {};
     return s;
 }

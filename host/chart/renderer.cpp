@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "chart/renderer.hpp"
 
+#include <algorithm>
+
+#include "lights/lights.hpp"
+
 namespace manylight {
 
 Rendering Renderer::render(const Setting& setting, uint seed, Progress& progress) {
@@ -34,8 +38,9 @@ Rendering Renderer::render(const Setting& setting, uint seed, Progress& progress
 }
 
 bool Renderer::is_exact(const Sampler& sampler) const {
-    const Features features = find_features(scene_);
-    return sampler.all_lights && !features.kinds[LIGHT_TRIANGLE] && !features.kinds[LIGHT_QUAD];
+    return sampler.all_lights && std::ranges::none_of(scene_.lights, [](const Light& light) {
+               return light_has(light, TRAIT_AREA);
+           });
 }
 
 }  // namespace manylight

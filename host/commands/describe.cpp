@@ -3,26 +3,15 @@
 
 #include <fmt/format.h>
 
+#include "lights/lights.hpp"
+
 namespace manylight {
 namespace {
 
-LightKind kind_of(const Light& light) { return static_cast<LightKind>(light.position.w); }
-
-std::string kind_name(const Light& light) {
-#define KIND_NAME(name, NAME, value) #name,
-    static const char* names[] = {LIGHT_KINDS(KIND_NAME)};
-#undef KIND_NAME
-    return names[kind_of(light)];
-}
-
-// In the file's frame; of a directional light, the unit direction to it.
+// In the file's frame; of a light that is infinitely far, the unit direction to it.
 glm::dvec3 centre_of(const Scene& scene, const Light& light) {
-    const glm::vec3 sides = glm::vec3(light.axis) + glm::vec3(light.edge);
-    glm::vec3 centre(light.position);
-    if (kind_of(light) == LIGHT_DIRECTIONAL) return -glm::vec3(light.axis);
-    if (kind_of(light) == LIGHT_TRIANGLE) centre += sides / 3.f;
-    if (kind_of(light) == LIGHT_QUAD) centre += sides / 2.f;
-    return scene.in_file(centre);
+    const glm::vec3 centre = extent_of<float>(light).centre;
+    return light_has(light, TRAIT_INFINITE) ? glm::dvec3(centre) : scene.in_file(centre);
 }
 
 std::string own_name(const Scene& scene, std::size_t light) {
@@ -33,22 +22,22 @@ std::string own_name(const Scene& scene, std::size_t light) {
 
 std::string name_of(const Scene& scene, std::size_t light) {
     const std::string name = own_name(scene, light);
-    const std::string kind = kind_name(scene.lights[light]);
+    const char* kind = name_of(kind_of(scene.lights[light]));
     return name.empty() ? fmt::format("{} light {}", kind, light)
                         : fmt::format("{} light '{}'", kind, name);
 }
 
 std::string place_of(const Scene& scene, std::size_t light) {
     const std::string place = show(centre_of(scene, scene.lights[light]));
-    return kind_of(scene.lights[light]) == LIGHT_DIRECTIONAL ? "from " + place : "at " + place;
+    return light_has(scene.lights[light], TRAIT_INFINITE) ? "from " + place : "at " + place;
 }
 
 nlohmann::json describe(const Scene& scene, std::size_t light) {
     const Light& l = scene.lights[light];
-    const char* place = kind_of(l) == LIGHT_DIRECTIONAL ? "direction" : "position";
+    const char* place = light_has(l, TRAIT_INFINITE) ? "direction" : "position";
     return {{"light", light},
             {"name", own_name(scene, light)},
-            {"kind", kind_name(l)},
+            {"kind", name_of(kind_of(l))},
             {place, vector_json(centre_of(scene, l))}};
 }
 

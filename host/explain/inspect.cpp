@@ -6,6 +6,7 @@
 #include <numeric>
 #include <optional>
 
+#include "lights/lights.hpp"
 #include "reference/adaptive.hpp"
 #include "reference/gbuffer.hpp"
 #include "reference/tiles.hpp"
@@ -15,11 +16,6 @@ namespace {
 
 constexpr std::size_t most_points = 256;
 constexpr std::size_t most_rays = std::size_t{1} << 18;
-
-bool has_area(const Light& light) {
-    const auto kind = static_cast<LightKind>(light.position.w);
-    return kind == LIGHT_TRIANGLE || kind == LIGHT_QUAD;
-}
 
 // Evaluates lights at one point.
 class Truth {
@@ -54,7 +50,7 @@ class Truth {
   private:
     void add_light(uint node, double probability, Sum& sum) const {
         const Light& light = tree_.lights[tree_.nodes[node].first];
-        const uint count = has_area(light) ? points_ : 1;
+        const uint count = light_has(light, TRAIT_AREA) ? points_ : 1;
         const double part = 1.0 / count;
         bool facing = false;
         bool seen = false;

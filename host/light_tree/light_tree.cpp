@@ -8,6 +8,8 @@
 #include <glm/gtc/constants.hpp>
 #include <thread>
 
+#include "lights/lights.hpp"
+
 namespace manylight {
 namespace {
 
@@ -26,16 +28,6 @@ struct Reference {
     std::uint32_t light;
 };
 
-bool has_area(const Light& light) {
-    const auto kind = static_cast<LightKind>(light.position.w);
-    return kind == LIGHT_TRIANGLE || kind == LIGHT_QUAD;
-}
-
-bool has_axis(const Light& light) {
-    const auto kind = static_cast<LightKind>(light.position.w);
-    return kind == LIGHT_SPOT || kind == LIGHT_ORIENTED || (has_area(light) && light.axis.w == 0);
-}
-
 // 1 - cos(angle), and back: unlike the cosine, it tells small angles apart.
 float versine_of(double angle) {
     const double s = std::sin(angle / 2);
@@ -48,80 +40,36 @@ double angle_between(const glm::dvec3& a, const glm::dvec3& b) {
     return std::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b));
 }
 
-// As long as the parallelogram is large; single precision would lose the square of a small one.
-glm::dvec3 area_normal(const Light& light) {
-    return glm::cross(glm::dvec3(light.axis), glm::dvec3(light.edge));
-}
-
-glm::vec3 axis_of(const Light& light) {
-    if (!has_axis(light)) return glm::vec3(0);
-    return has_area(light) ? glm::vec3(glm::normalize(area_normal(light))) : glm::vec3(light.axis);
-}
-
-// Of an area light: where it lies.
-struct Extent {
-    std::array<glm::vec3, 4> corners;
-    glm::vec3 centre;
-    float area;
-    float mean_square;  // distance to the centre
-};
-
-Extent extent_of(const Light& light) {
-    const glm::vec3 p(light.position);
-    const glm::vec3 u(light.axis);
-    const glm::vec3 v(light.edge);
-    const auto area = static_cast<float>(glm::length(area_normal(light)));
-    const float squares = glm::dot(u, u) + glm::dot(v, v);
-    if (static_cast<LightKind>(light.position.w) == LIGHT_QUAD)
-        return {{p, p + u, p + v, p + u + v}, p + (u + v) / 2.f, area, squares / 12};
-    return {{p, p + u, p + v, p}, p + (u + v) / 3.f, area / 2, (squares - glm::dot(u, v)) / 18};
-}
-
 // The share of a light of two sides that counts as without axis.
 constexpr float two_sides = 0.5f;
 
 // A node of one light.
 LightNode leaf_of(const Light& light, uint index) {
-    const auto kind = static_cast<LightKind>(light.position.w);
     LightNode node{};
     node.first = index;
     node.count = 1;
-    node.kind = kind;
+    node.kind = kind_of(light);
     node.reach = -1;
+    const Extent<float> extent = extent_of<float>(light);
     Bounds bounds;
-    glm::vec3 centre(0);
-    glm::vec3 intensity(light.emission);
-    float mean_square = 0;
     float radius = 0;
-    if (NODE_IS_INFINITE(node)) {
-        centre = -glm::vec3(light.axis);
-        bounds.add(centre);
-    } else if (has_area(light)) {
-        const Extent extent = extent_of(light);
-        centre = extent.centre;
-        intensity *= extent.area;
-        mean_square = extent.mean_square;
-        for (const glm::vec3& corner : extent.corners) {
-            bounds.add(corner);
-            radius = std::max(radius, glm::length(corner - centre));
-        }
-    } else {
-        centre = light.position;
-        bounds.add(centre);
+    for (const glm::vec3& corner : extent.corners) {
+        bounds.add(corner);
+        radius = std::max(radius, glm::length(corner - extent.centre));
     }
+    const bool axial = has_axis(light);
     const glm::vec3 axis = axis_of(light);
-    const bool two_sided = has_area(light) && light.axis.w != 0;
-    node.centre = float4(centre, mean_square);
-    node.axis = two_sided ? float4(glm::vec3(glm::normalize(area_normal(light))), two_sides)
-                          : float4(axis, has_axis(light) ? 0 : 1);
-    node.intensity = float4(intensity, radius);
-    float emitting = 2;
-    if (has_axis(light)) emitting = 1;
-    if (kind == LIGHT_SPOT)
+    node.centre = float4(extent.centre, extent.mean_square);
+    node.axis = shines_to_both_sides(light)
+                    ? float4(glm::vec3(glm::normalize(area_normal(light))), two_sides)
+                    : float4(axis, axial ? 0 : 1);
+    node.intensity = float4(glm::vec3(light.emission) * extent.area, radius);
+    float emitting = axial ? 1 : 2;
+    if (light_has(light, TRAIT_CONE))
         emitting = std::min(versine_of(angle_of(light.edge.y) + cone_margin), 1.f);
-    node.lower = float4(bounds.lower, has_axis(light) || NODE_IS_INFINITE(node) ? 0 : 2);
+    node.lower = float4(bounds.lower, axial || NODE_IS_INFINITE(node) ? 0 : 2);
     node.upper = float4(bounds.upper, emitting);
-    node.cone = float4(has_axis(light) ? axis : glm::vec3(0, 0, 1), light.emission.w);
+    node.cone = float4(axial ? axis : glm::vec3(0, 0, 1), light.emission.w);
     return node;
 }
 

@@ -10,7 +10,7 @@ namespace manylight::reference {
 namespace {
 
 bool single_point(const LightNode& node) {
-    return node.kind != NODE_GROUP && node.kind != LIGHT_TRIANGLE && node.kind != LIGHT_QUAD;
+    return node.kind != NODE_GROUP && !light_has(node.kind, TRAIT_AREA);
 }
 
 struct Entry {

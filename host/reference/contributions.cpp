@@ -12,8 +12,7 @@ Contribution contribution(const Tracer& tracer, const Surface& representative,
 }
 
 glm::dvec2 centroid(const Light& light) {
-    if (static_cast<LightKind>(light.position.w) == LIGHT_TRIANGLE) return {1.0 / 3, 1.0 / 3};
-    return {0.5, 0.5};
+    return glm::dvec2(1.0 / light_centroid_parts(static_cast<uint>(light.position.w)));
 }
 
 RowTotal row_total(std::span<const float> row) {

@@ -5,6 +5,10 @@
 #include <cmath>
 #include <glm/gtc/constants.hpp>
 
+#include "reference/lights/lights.hpp"
+#include "reference/material/ggx.hpp"
+#include "reference/material/lambert.hpp"
+
 namespace manylight::reference {
 namespace {
 
@@ -18,37 +22,20 @@ double soft(double k, double v) {
 glm::dvec3 widened_brdf(const Material& m, const glm::dvec3& n, const glm::dvec3& wi,
                         const glm::dvec3& wo, double spread) {
     const glm::dvec3 base(m.base_color);
-    if (m.base_color.w == 0 && m.specular == 0) return base / glm::pi<double>();
+    if (m.base_color.w == 0 && m.specular == 0) return lambert(base);
     const glm::dvec3 sum = wi + wo;
     if (glm::dot(sum, sum) < 1e-20) return glm::dvec3(0);  // from behind
     const glm::dvec3 h = glm::normalize(sum);
     const double a2 = double{m.roughness} * m.roughness + spread / 4;
-    const double n_h = glm::dot(n, h);
-    const double n_l = std::max(glm::dot(n, wi), 0.0);
-    const double n_v = std::max(std::abs(glm::dot(n, wo)), 1e-4);
-    const double d = std::min(n_h * n_h, 1.0) * (a2 - 1) + 1;
-    const auto smith = [a2](double c) { return c + std::sqrt(a2 + (1 - a2) * c * c); };
-    const double lobe = a2 / (glm::pi<double>() * d * d * smith(n_l) * smith(n_v));
-    const double schlick = std::pow(std::max(1 - std::abs(glm::dot(wo, h)), 0.0), 5);
+    const double lobe = widened_ggx_lobe(a2, glm::dot(n, h), std::max(glm::dot(n, wi), 0.0),
+                                         std::max(std::abs(glm::dot(n, wo)), 1e-4));
+    const double schlick = schlick_part(glm::dot(wo, h));
     const glm::dvec3 f0(m.reflectance);
     const glm::dvec3 fresnel = double{m.specular} * (f0 + (1.0 - f0) * schlick);
     const double most = std::max({fresnel.r, fresnel.g, fresnel.b});
-    const glm::dvec3 dielectric = (1 - most) * base / glm::pi<double>() + lobe * fresnel;
+    const glm::dvec3 dielectric = (1 - most) * lambert(base) + lobe * fresnel;
     const glm::dvec3 metal = lobe * (base + (1.0 - base) * schlick);
     return glm::mix(dielectric, metal, double{m.base_color.w});
-}
-
-// Falloff and cone of a leaf, relative to what an isotropic point would give.
-double leaf_emission(const LightNode& node, const Light& light, const glm::dvec3& d,
-                     const glm::dvec3& towards) {
-    const double distance = glm::length(d);
-    double emission = 1;
-    if (light.axis.w > 0) emission = std::clamp(1 - std::pow(distance / light.axis.w, 4), 0.0, 1.0);
-    if (node.kind == LIGHT_SPOT) {
-        const double versine = 1 - glm::dot(-towards, glm::normalize(glm::dvec3(light.axis)));
-        emission *= std::pow(std::clamp((light.edge.y - versine) * light.edge.x, 0.0, 1.0), 2);
-    }
-    return emission;
 }
 
 // 0 where none of a group's lights shines: off its mean axis by more than its reach and what its
@@ -93,14 +80,8 @@ glm::dvec3 node_estimate(const LightTree& tree, uint index, const Point& point) 
         double emission;
         const Light& light = tree.lights[node.first];
         const glm::dvec3 axis(node.axis);
-        if (node.kind == LIGHT_POINT || node.kind == LIGHT_SPOT) {
-            emission = leaf_emission(node, light, d, towards);
-        } else if (node.kind == LIGHT_TRIANGLE || node.kind == LIGHT_QUAD) {
-            const glm::dvec3 n =
-                glm::normalize(glm::cross(glm::dvec3(light.axis), glm::dvec3(light.edge)));
-            const double height = -glm::dot(d, n);
-            emission = (light.axis.w != 0 ? std::abs(height) : std::max(height, 0.0)) /
-                       std::sqrt(softened);
+        if (const auto leaf = leaf_emission(node, light, d, softened)) {
+            emission = *leaf;
         } else {
             const double oriented = 1 - double{node.axis.w};
             const double delta = std::max(oriented * oriented - glm::dot(axis, axis), 1e-6) / 3;

@@ -2,9 +2,9 @@
 #include "reference/reflections.hpp"
 
 #include <algorithm>
-#include <glm/gtc/constants.hpp>
 #include <tuple>
 
+#include "reference/material/ggx.hpp"
 #include "reference/random.hpp"
 #include "reference/textures.hpp"
 #include "reference/triangle.hpp"
@@ -60,7 +60,7 @@ double inside(const Light& cell, const glm::dvec3& point) {
     const glm::dvec3 d = point - glm::dvec3(cell.position);
     const double s = glm::dot(glm::cross(d, v), n) / glm::dot(n, n);
     const double t = glm::dot(glm::cross(u, d), n) / glm::dot(n, n);
-    if (static_cast<LightKind>(cell.position.w) == LIGHT_QUAD)
+    if (light_centroid_parts(static_cast<uint>(cell.position.w)) == 2)  // a parallelogram
         return std::min({s, 1 - s, t, 1 - t});
     return std::min({s, t, 1 - s - t});
 }
@@ -76,25 +76,6 @@ CellAt cell_at(const Scene& scene, uint triangle, const glm::dvec3& point) {
     }
     if (out.margin < 0) return {NO_LIGHT, -out.margin};
     return out;
-}
-
-glm::dvec3 sample_lobe(double alpha, const glm::dvec3& normal, const glm::dvec3& wo,
-                       const glm::dvec2& u) {
-    // A frame about the normal: Duff et al., "Building an Orthonormal Basis, Revisited" (JCGT 6:1,
-    // 2017).
-    const glm::dvec3& n = normal;
-    const double sign = std::copysign(1.0, n.z);
-    const double a = -1 / (sign + n.z);
-    const glm::dmat3 frame(glm::dvec3(1 + sign * n.x * n.x * a, sign * n.x * n.y * a, -sign * n.x),
-                           glm::dvec3(n.x * n.y * a, sign + n.y * n.y * a, -n.y), n);
-    const glm::dvec3 stretch(alpha, alpha, 1);
-    const glm::dvec3 viewer = glm::normalize(stretch * (glm::transpose(frame) * wo));
-    const double height = glm::mix(1.0, -viewer.z, u.y);  // of the cap of directions to the viewer
-    const double radius = std::sqrt(std::max(1 - height * height, 0.0));
-    const double phi = 2 * glm::pi<double>() * u.x;
-    const glm::dvec3 half =
-        viewer + glm::dvec3(radius * std::cos(phi), radius * std::sin(phi), height);
-    return -glm::reflect(wo, glm::normalize(frame * (stretch * half)));
 }
 
 glm::dvec2 reflection_point(uint pixel, uint pixel_sample, uint seed) {

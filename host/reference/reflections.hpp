@@ -7,13 +7,6 @@
 
 namespace manylight::reference {
 
-/// A unit direction drawn from the GGX lobe about unit `normal` for a viewer in unit direction
-/// `wo`, whose cosine is positive, with the density that lobe_density() gives; `u` in [0, 1)^2.
-/// Visible normals (Heitz, "Sampling the GGX Distribution of Visible Normals", JCGT 7:4, 2018) as
-/// points of spherical caps (Dupuy and Benyoub, 2023).
-[[nodiscard]] glm::dvec3 sample_lobe(double alpha, const glm::dvec3& normal, const glm::dvec3& wo,
-                                     const glm::dvec2& u);
-
 /// The numbers, in [0, 1)^2, that a pixel sample's reflected direction is drawn from.
 [[nodiscard]] glm::dvec2 reflection_point(uint pixel, uint pixel_sample, uint seed);
 

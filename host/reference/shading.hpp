@@ -74,15 +74,6 @@ class Viewers {
 /// Whether stage reflections takes part in what the lobe reflects of area lights.
 [[nodiscard]] bool reflects(const Surface& surface, const Material& material, const Viewer& viewer);
 
-/// The light samples' share of what the lobe reflects of a point of a light's cell (area x cosine /
-/// squared distance = `solid_angle`, sr), where reflected directions have `density`, 1/sr: the
-/// power heuristic (Veach and Guibas, "Optimally Combining Sampling Techniques for Monte Carlo
-/// Rendering", 1995) for `count` samples of the light and one of the lobe.
-[[nodiscard]] inline double light_share(double density, double solid_angle, double count) {
-    const double light = count / solid_angle;
-    return solid_angle > 0 ? light * light / (light * light + density * density) : 1;
-}
-
 /// Direct light of one light, or of its point u in [0, 1)^2, without visibility and without what is
 /// left to stage reflections, where `count` light samples are expected on the light.
 struct Unshadowed {
@@ -98,15 +89,12 @@ struct Unshadowed {
                                     double count = 1);
 
 [[nodiscard]] inline bool has_area(const Light& light) {
-    const auto kind = static_cast<LightKind>(light.position.w);
-    return kind == LIGHT_TRIANGLE || kind == LIGHT_QUAD;
+    return light_has(static_cast<uint>(light.position.w), TRAIT_AREA);
 }
 
 /// By how much rounding to single precision can change the value of unshadowed(): the changes under
 /// shifts of the position along each axis by 8 units in the last place of the coordinates and of
-/// the distance to the light, of an area's normal (a cross product) by 2 units of the product of
-/// its sides, of the direction to a directional light by 4 units, and of 1 - the cosine to a spot's
-/// axis by what 4 units do to the sine, added up.
+/// the distance to the light, and under the light's own (light_shifts()), added up.
 [[nodiscard]] double rounding_slack(const Surface& surface, const Material& material,
                                     const Viewer& viewer, const Light& light, const glm::dvec2& u,
                                     double count = 1);

@@ -4,6 +4,7 @@
 #include <glm/gtc/constants.hpp>
 #include <optional>
 
+#include "lights/lights.hpp"
 #include "scene/area_lights.hpp"
 #include "scene/textures.hpp"
 #include "shared/surface.h"
@@ -197,35 +198,9 @@ std::vector<Light> make_points(const std::vector<Emitter>& emitters, unsigned po
     return lights;
 }
 
-// The area of all emitting sides of the parallelogram of a light's axis and edge, m2.
-float parallelogram(const Light& light) {
-    const double area = glm::length(glm::cross(glm::dvec3(light.axis), glm::dvec3(light.edge)));
-    return static_cast<float>(area * (light.axis.w != 0 ? 2 : 1));
-}
-
 // What emission.w of a light is; see shared/light.h.
-float power_of(const Light& light, const Bounds& bounds) {
-    constexpr float pi = glm::pi<float>();
-    const float brightness = luminance(light.emission);
-    switch (static_cast<LightKind>(light.position.w)) {
-        case LIGHT_POINT:
-            return 4 * pi * brightness;
-        case LIGHT_SPOT:
-            // Over the sphere, its 1 - cosine is uniform; the mean of the square where it fades is
-            // a third.
-            return 2 * pi * brightness * std::max(light.edge.y - 2 / (3 * light.edge.x), 0.f);
-        case LIGHT_DIRECTIONAL:
-            return brightness * pi * bounds.radius() * bounds.radius();
-        case LIGHT_ORIENTED:
-            return pi * brightness;
-        case LIGHT_TRIANGLE:
-            return pi * brightness * parallelogram(light) / 2;
-        case LIGHT_QUAD:
-            return pi * brightness * parallelogram(light);
-        case light_kind_count:
-            break;
-    }
-    return 0;
+float power_in(const Light& light, const Bounds& bounds) {
+    return power_of(light, luminance(light.emission), bounds.radius());
 }
 
 // The cells of emitters, of their triangles, whose lights will be the scene's last.
@@ -258,7 +233,7 @@ void add_emitters(Scene& scene, unsigned points) {
     }
     scene.lights.insert(scene.lights.end(), lights.begin(), lights.end());
     const Bounds bounds = scene.bounds();
-    for (Light& light : scene.lights) light.emission.w = power_of(light, bounds);
+    for (Light& light : scene.lights) light.emission.w = power_in(light, bounds);
 }
 
 bool is_dark(const Scene& scene) {
@@ -289,7 +264,7 @@ void add_headlight(Scene& scene, const View& view) {
         light.position = float4(glm::vec3(place), LIGHT_POINT);
         light.emission = float4(glm::vec3(static_cast<float>(intensity)), 0);
     }
-    light.emission.w = power_of(light, bounds);
+    light.emission.w = power_in(light, bounds);
     const auto own = static_cast<std::ptrdiff_t>(scene.light_names.size());
     scene.lights.insert(scene.lights.begin() + own, light);
     scene.light_names.emplace_back("headlight");

@@ -158,8 +158,6 @@ Bounds Scene::bounds() const {
 
 Features find_features(const Scene& scene) {
     Features features;
-    for (const Light& light : scene.lights)
-        features.kinds[static_cast<std::size_t>(light.position.w)] = true;
     std::vector<bool> used(scene.materials.size(), false);
     for (const std::uint32_t material : scene.triangle_materials) used[material] = true;
     for (std::size_t i = 0; i < scene.materials.size(); ++i) {

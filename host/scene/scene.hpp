@@ -130,17 +130,16 @@ struct Scene {
 
 /// Which kernel code a scene needs.
 struct Features {
-    bool kinds[light_kind_count] = {};  // by LightKind
-    bool ggx = false;                   // a material is more than Lambert's
-    bool smooth = false;                // a mesh has vertex normals
-    bool emission = false;              // emitters can be seen
-    bool reflections = false;           // glossy materials reflect area lights
-    bool textures = false;              // materials have textures
-    bool specular_maps = false;         // ... of their specular factor and colour
-    bool colors = false;                // vertices have colours
-    bool tangents = false;              // vertices have tangents
-    bool alpha = false;                 // not all of every triangle is there
-    bool instances = false;             // meshes are stored once and stand in several places
+    bool ggx = false;            // a material is more than Lambert's
+    bool smooth = false;         // a mesh has vertex normals
+    bool emission = false;       // emitters can be seen
+    bool reflections = false;    // glossy materials reflect area lights
+    bool textures = false;       // materials have textures
+    bool specular_maps = false;  // ... of their specular factor and colour
+    bool colors = false;         // vertices have colours
+    bool tangents = false;       // vertices have tangents
+    bool alpha = false;          // not all of every triangle is there
+    bool instances = false;      // meshes are stored once and stand in several places
 };
 
 [[nodiscard]] Features find_features(const Scene& scene);

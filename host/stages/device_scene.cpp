@@ -18,9 +18,17 @@ void set_lights(Device& device, const std::vector<Light>& lights, const LightTre
     }
     bool kinds[light_kind_count] = {};
     for (const Light& light : lights) kinds[static_cast<std::size_t>(light.position.w)] = true;
-#define DEFINE_KIND(name, NAME, value) out.shading["HAS_" #NAME] = kinds[value];
+    const auto has = [&kinds](LightTrait trait) {
+        for (uint kind = 0; kind < light_kind_count; ++kind)
+            if (kinds[kind] && light_has(kind, trait)) return true;
+        return false;
+    };
+#define DEFINE_KIND(name, NAME, value, traits, centroid) out.shading["HAS_" #NAME] = kinds[value];
+#define DEFINE_TRAIT(NAME, value) out.shading["HAS_" #NAME] = has(TRAIT_##NAME);
     LIGHT_KINDS(DEFINE_KIND)
+    LIGHT_TRAITS(DEFINE_TRAIT)
 #undef DEFINE_KIND
+#undef DEFINE_TRAIT
 }
 
 // Whether a dielectric reflects otherwise than one of the index 1.5.
@@ -127,7 +135,7 @@ DeviceScene with_lights(Device& device, DeviceScene scene, const std::vector<Lig
 void reserve_tree(Device& device, const std::vector<Light>& lights, DeviceScene& scene) {
     const auto infinite =
         static_cast<std::size_t>(std::ranges::count_if(lights, [](const Light& light) {
-            return static_cast<LightKind>(light.position.w) == LIGHT_DIRECTIONAL;
+            return light_has(static_cast<uint>(light.position.w), TRAIT_INFINITE);
         }));
     const std::size_t finite = lights.size() - infinite;
     const bool both = infinite > 0 && finite > 0;

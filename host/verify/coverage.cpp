@@ -21,7 +21,8 @@ std::string name_at(std::string_view text, std::size_t at) {
     return std::string(text.substr(at, end - at));
 }
 
-// The names that follow `before`, which no name does; comments do not count.
+// The names that follow `before`, which no name does; comments do not count, nor does a mere
+// `before` that macros make names of.
 std::vector<std::string> names_after(std::string_view source, std::string_view before,
                                      bool with_it) {
     std::vector<std::string> names;
@@ -32,7 +33,7 @@ std::vector<std::string> names_after(std::string_view source, std::string_view b
         line = line.substr(0, line.find("//"));
         for (std::size_t at = line.find(before); at != std::string_view::npos;
              at = line.find(before, at + 1))
-            if (at == 0 || !is_name(line[at - 1]))
+            if ((at == 0 || !is_name(line[at - 1])) && name_at(line, at) != before)
                 names.push_back(name_at(line, with_it ? at : at + before.size()));
     }
     return names;

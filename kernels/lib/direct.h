@@ -63,8 +63,9 @@ static float3 unshadowed_weighed(const Receiver* r, __global const Light* light,
     shadow->origin = shadow_origin(r);
     shadow->direction = s.infinite ? s.direction : s.target - shadow->origin;
     shadow->end = 1.0f;
-#if HAS_DIRECTIONAL
-    if (s.infinite) shadow->end = directional_end(light, shadow->origin);
+#if HAS_INFINITE
+    // An end of 0 would be no ray.
+    if (s.infinite) shadow->end = max(-dot(s.direction, shadow->origin) - s.plane, 1e-30f);
 #endif
     const float3 value = brdf(r->material, r->normal, s.direction, r->outgoing,
                               r->reflects ? s.solid_angle * weight : 0.0f) *

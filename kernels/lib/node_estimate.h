@@ -27,6 +27,7 @@
 #define NODE_REAL float
 #define NODE_MASK int
 #define NODE_NAMED(name) NAMED(name)
+#define NODE_HAS light_has
 #define ANY_NODE(mask) (mask)
 #define WHERE_NODE(mask, yes, no) ((mask) ? (yes) : (no))
 #else
@@ -34,6 +35,7 @@
 #define NODE_REAL float_n
 #define NODE_MASK int_n
 #define NODE_NAMED(name) name##_n_n
+#define NODE_HAS light_has_n
 #define ANY_NODE(mask) (lanes_n(mask) != 0u)
 #define WHERE_NODE(mask, yes, no) select(no, yes, mask)
 #endif
@@ -45,15 +47,15 @@ typedef struct NODE {
     NODE_REAL ax, ay, az;                // mean axis; of an emitter with area its unit normal
     NODE_REAL iso;                       // the share of light without axis; two sides: above 0
     NODE_REAL red, green, blue, radius;  // intensity; all lights are so close to the mean position
-#if HAS_POINT || HAS_SPOT
+#if HAS_RANGE
     NODE_REAL falloff;  // 1 / range^2, 0 without a range
 #endif
-#if HAS_SPOT
+#if HAS_CONE
     NODE_REAL scale, outer;  // Light::edge.x and y, 1 and 3 without a cone
     NODE_REAL reach;         // of a group
 #endif
 #if !WIDE_NODES
-    uint kind;  // LIGHT_DIRECTIONAL for groups of them, too
+    uint kind;
 #else
     uint_n kind;
 #endif
@@ -78,20 +80,26 @@ static Node_1 load_node(__global const LightNode* node, __global const Light* li
     n.green = node->intensity.y;
     n.blue = node->intensity.z;
     n.radius = node->intensity.w;
-    n.kind = node->kind == NODE_DIRECTIONS ? LIGHT_DIRECTIONAL : node->kind;
-#if HAS_POINT || HAS_SPOT
-    n.falloff = n.kind == LIGHT_POINT || n.kind == LIGHT_SPOT
-                    ? inverse_square(lights[node->first].axis.w)
-                    : 0.0f;
+    n.kind = node->kind;
+#if HAS_RANGE
+    n.falloff = light_has(n.kind, TRAIT_RANGE) ? inverse_square(lights[node->first].axis.w) : 0.0f;
 #endif
-#if HAS_SPOT
-    n.scale = n.kind == LIGHT_SPOT ? lights[node->first].edge.x : 1.0f;
-    n.outer = n.kind == LIGHT_SPOT ? lights[node->first].edge.y : 3.0f;
+#if HAS_CONE
+    n.scale = light_has(n.kind, TRAIT_CONE) ? lights[node->first].edge.x : 1.0f;
+    n.outer = light_has(n.kind, TRAIT_CONE) ? lights[node->first].edge.y : 3.0f;
     n.reach = node->reach;
 #endif
     return n;
 }
 #elif WIDE_NODES
+// light_has() of the lanes' kinds; `trait` is known when this is compiled.
+INLINE int_n light_has_n(uint_n kind, uint trait) {
+#define LIGHT_KIND_HAS(name, NAME, value, traits, centroid) \
+    | (((traits)&trait) != 0u ? kind == value : (int_n)(0))
+    return (int_n)(0)LIGHT_KINDS(LIGHT_KIND_HAS);
+#undef LIGHT_KIND_HAS
+}
+
 // The nodes of all lanes, with their numbers of lights and the first of these.
 INLINE Node_n load_nodes_n(__global const LightNode* nodes, __global const Light* lights,
                            uint_n indices, uint_n* first, uint_n* count) {
@@ -113,21 +121,19 @@ INLINE Node_n load_nodes_n(__global const LightNode* nodes, __global const Light
     n.blue = rows[10];
     n.radius = rows[11];
     n.kind = as_uint_n(rows[15]);
-    n.kind = select(n.kind, (uint_n)(LIGHT_DIRECTIONAL), as_uint_n(n.kind == NODE_DIRECTIONS));
     // What single lights have of their own.
-#if HAS_POINT || HAS_SPOT
+#if HAS_RANGE
     n.falloff = (float_n)(0.0f);
-    uint lanes = lanes_n((n.kind == LIGHT_POINT) | (n.kind == LIGHT_SPOT));
-    for (; lanes; lanes &= lanes - 1u) {
+    for (uint lanes = lanes_n(light_has_n(n.kind, TRAIT_RANGE)); lanes; lanes &= lanes - 1u) {
         const uint lane = lowest(lanes);
         SET_LANE(n.falloff, lane, inverse_square(lights[UINT_LANE(*first, lane)].axis.w));
     }
 #endif
-#if HAS_SPOT
+#if HAS_CONE
     n.reach = rows[14];
     n.scale = (float_n)(1.0f);
     n.outer = (float_n)(3.0f);
-    for (lanes = lanes_n(n.kind == LIGHT_SPOT); lanes; lanes &= lanes - 1u) {
+    for (uint lanes = lanes_n(light_has_n(n.kind, TRAIT_CONE)); lanes; lanes &= lanes - 1u) {
         const uint lane = lowest(lanes);
         __global const Light* light = lights + UINT_LANE(*first, lane);
         SET_LANE(n.scale, lane, light->edge.x);
@@ -141,6 +147,10 @@ INLINE Node_n load_nodes_n(__global const LightNode* nodes, __global const Light
 #if !WIDE_NODES
 #include "lib/reflect.h"
 #endif
+
+#define FOR_NODES 1
+#include "lights/kinds.h"
+#undef FOR_NODES
 
 // The lights' part: their intensity's factor and the unit direction to their centre. 0 where none
 // of them can be above the surface.
@@ -159,37 +169,32 @@ INLINE REAL NODE_NAMED(node_geometry)(const NODE* node, const NAMED(Points) * p,
     REAL emission = (REAL)(1.0f);
     const REAL along =
         -NAMED(dot3)((REAL)(node->ax), (REAL)(node->ay), (REAL)(node->az), *wx, *wy, *wz);
-#if HAS_POINT || HAS_SPOT
-    if (ANY_NODE(node->falloff > 0.0f)) {
-        const REAL ratio = distance2 * node->falloff;
-        emission = clamp(1.0f - ratio * ratio, 0.0f, 1.0f);
-    }
+#if HAS_RANGE
+    if (ANY_NODE(node->falloff > 0.0f)) emission = NODE_NAMED(node_window)(node, distance2);
 #endif
-#if HAS_SPOT
-    if (ANY_NODE(node->kind == LIGHT_SPOT)) {
-        const REAL versine = NAMED(versine)(along, *wx, *wy, *wz, (REAL)(node->ax),
-                                            (REAL)(node->ay), (REAL)(node->az));
-        const REAL cone = clamp((node->outer - versine) * node->scale, 0.0f, 1.0f);
-        emission *= cone * cone;
-    }
+#if HAS_CONE
+    if (ANY_NODE(NODE_HAS(node->kind, TRAIT_CONE)))
+        emission *= NODE_NAMED(node_cone)(node, along, *wx, *wy, *wz);
 #endif
-#if HAS_TRIANGLE || HAS_QUAD
-    const NODE_MASK area = (node->kind == LIGHT_TRIANGLE) | (node->kind == LIGHT_QUAD);
-    if (ANY_NODE(area)) {
-        // The height over the emitter's plane: the same, whichever of its points is seen.
-        const REAL height = along * distance2 * inverse;
-        const REAL above = WHERE_NODE(node->iso > 0.0f, fabs(height), max(height, (REAL)(0.0f)));
-        emission = WHERE_NODE(area, above * NAMED(root)(softened), emission);
-    }
+#if HAS_AREA
+    const NODE_MASK area = NODE_HAS(node->kind, TRAIT_AREA);
+    if (ANY_NODE(area))
+        emission = WHERE_NODE(
+            area, NODE_NAMED(node_area)(node, along, distance2, inverse, softened), emission);
 #endif
-    const NODE_MASK cosines = (node->kind == NODE_GROUP) | (node->kind == LIGHT_ORIENTED);
+    // Groups, and lights that their mean axis says all of.
+    NODE_MASK cosines = NODE_HAS(node->kind, TRAIT_COSINE);
+#if HAS_AREA
+    cosines = cosines & !area;
+#endif
+    cosines = cosines | (node->kind == NODE_GROUP);
     if (ANY_NODE(cosines)) {
         const NODE_REAL o = 1.0f - node->iso, o2 = o * o;
         const NODE_REAL axis2 = node->ax * node->ax + node->ay * node->ay + node->az * node->az;
         const NODE_REAL delta = max(o2 - axis2, 1e-6f) / 3.0f;
         const REAL lobe = NAMED(soft)(along, *spread * o2 + delta);
         REAL mixed = node->iso + WHERE_NODE(node->iso < 1.0f, lobe, (REAL)(0.0f));
-#if HAS_SPOT
+#if HAS_CONE
         // Nothing where none of a group's spots shines, but a little beside that.
         if (ANY_NODE(node->reach > -1.0f)) {
             const NODE_REAL reach_sine = sqrt(max(1.0f - node->reach * node->reach, 0.0f));
@@ -205,8 +210,9 @@ INLINE REAL NODE_NAMED(node_geometry)(const NODE* node, const NAMED(Points) * p,
     }
     const REAL finite =
         WHERE(k + node->radius * inverse <= 0.0f, (REAL)(0.0f), incidence * emission);
-#if HAS_DIRECTIONAL
-    const NODE_MASK infinite = node->kind == LIGHT_DIRECTIONAL;
+#if HAS_INFINITE
+    const NODE_MASK infinite =
+        NODE_HAS(node->kind, TRAIT_INFINITE) | (node->kind == NODE_DIRECTIONS);
     if (ANY_NODE(infinite)) {  // the position is a direction
         const NODE_REAL length2 = node->x * node->x + node->y * node->y + node->z * node->z;
         const NODE_REAL scale = 1.0f / sqrt(max(length2, 1e-30f));
@@ -244,5 +250,6 @@ INLINE NAMED(Color) NODE_NAMED(node_estimate)(const NODE* node, const NAMED(Poin
 #undef NODE_REAL
 #undef NODE_MASK
 #undef NODE_NAMED
+#undef NODE_HAS
 #undef ANY_NODE
 #undef WHERE_NODE

@@ -42,40 +42,21 @@ INLINE REAL NAMED(soft)(REAL k, REAL v) {
     return WHERE(k >= 0.0f, t, 0.25f * v * NAMED(inverse)(max(t, (REAL)(1e-30f))));
 }
 
+#define FOR_POINTS 1
+#include "material/ggx.h"
+#include "material/lambert.h"
+#undef FOR_POINTS
+
 // Radiance reflected per illuminance from unit directions w: glTF's BRDF (lib/brdf.h) with a lobe
 // that is widened by the lights' squared angular spread, times cosines and all else in `factor`.
 // What stage reflections has of a light of `solid_angle` is left to it.
 INLINE NAMED(Color) NAMED(reflect_all)(const NAMED(Points) * p, REAL wx, REAL wy, REAL wz,
                                        REAL spread, REAL solid_angle, REAL factor) {
-    NAMED(Color) c;
 #if HAS_GGX
     if (p->glossy) {
-        REAL hx = wx + p->vx, hy = wy + p->vy, hz = wz + p->vz;
-        const REAL scale =
-            NAMED(inverse_root)(max(NAMED(dot3)(hx, hy, hz, hx, hy, hz), (REAL)(1e-30f)));
-        hx *= scale;
-        hy *= scale;
-        hz *= scale;
-        const REAL a2 = fma(p->alpha, p->alpha, 0.25f * spread);
-        const REAL n_h = NAMED(dot3)(p->nx, p->ny, p->nz, hx, hy, hz);
-        const REAL n_in = max(NAMED(dot3)(p->nx, p->ny, p->nz, wx, wy, wz), (REAL)(0.0f));
-        const REAL n_out =
-            max(fabs(NAMED(dot3)(p->nx, p->ny, p->nz, p->vx, p->vy, p->vz)), (REAL)(1e-4f));
-        // 1 - (N.H)^2 would cancel for small alpha.
-        const REAL sx = fma(p->ny, hz, -p->nz * hy);
-        const REAL sy = fma(p->nz, hx, -p->nx * hz);
-        const REAL sz = fma(p->nx, hy, -p->ny * hx);
-        const REAL width = fma(a2 * n_h, n_h, NAMED(dot3)(sx, sy, sz, sx, sy, sz));
-        const REAL in = n_in + NAMED(root)(fma(1.0f - a2, n_in * n_in, a2));
-        const REAL out = n_out + NAMED(root)(fma(1.0f - a2, n_out * n_out, a2));
-        const REAL across = NAMED(inverse)(max(width, 0.5f * a2));  // w = -v: no h
-        REAL lobe = M_1_PI_F * a2 * across * across * NAMED(inverse)(in * out);
-#if HAS_REFLECTIONS
-        const REAL ratio = 0.5f * lobe * in * solid_angle;  // light_share() of lib/brdf.h
-        lobe *= NAMED(inverse)(fma(ratio, ratio, (REAL)(1.0f)));
-#endif
-        const REAL m = max(1.0f - fabs(NAMED(dot3)(p->vx, p->vy, p->vz, hx, hy, hz)), (REAL)(0.0f));
-        const REAL fresnel = (m * m) * (m * m) * m;
+        NAMED(Color) c;
+        REAL fresnel;
+        const REAL lobe = NAMED(ggx)(p, wx, wy, wz, spread, solid_angle, &fresnel);
 #if HAS_REFLECTANCE
         const REAL red = p->specular * fma(1.0f - p->f0_red, fresnel, p->f0_red);
         const REAL green = p->specular * fma(1.0f - p->f0_green, fresnel, p->f0_green);
@@ -100,11 +81,7 @@ INLINE NAMED(Color) NAMED(reflect_all)(const NAMED(Points) * p, REAL wx, REAL wy
 #endif
     }
 #endif
-    factor *= M_1_PI_F;
-    c.red = factor * p->red;
-    c.green = factor * p->green;
-    c.blue = factor * p->blue;
-    return c;
+    return NAMED(lambert)(p, factor);
 }
 
 // The same times the throughput.

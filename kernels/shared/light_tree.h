@@ -38,9 +38,10 @@ SHARED_SIZE(LightNode, 128)
 #define REACH_EDGE 20.0f
 
 #define NODE_GROUP 100
-#define NODE_DIRECTIONS 101  // a group of directional lights
+#define NODE_DIRECTIONS 101  // a group of lights that are infinitely far
 
-#define NODE_IS_INFINITE(node) ((node).kind == LIGHT_DIRECTIONAL || (node).kind == NODE_DIRECTIONS)
+#define NODE_IS_INFINITE(node) \
+    (light_has((node).kind, TRAIT_INFINITE) || (node).kind == NODE_DIRECTIONS)
 
 SHARED_END
 

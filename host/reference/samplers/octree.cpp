@@ -5,6 +5,7 @@
 #include <cmath>
 #include <glm/gtc/constants.hpp>
 
+#include "reference/contributions.hpp"
 #include "reference/random.hpp"
 
 namespace manylight::reference {
@@ -191,9 +192,7 @@ glm::dvec3 Octree::total(const Point& point) const {
         const OctreeNode& node = nodes_[i];
         if (is_leaf(i)) {
             const Light& light = point.scene.lights[node.light];
-            const bool triangle = static_cast<LightKind>(light.position.w) == LIGHT_TRIANGLE;
-            sum += unshadowed(point.surface, point.material(), point.viewer, light,
-                              glm::dvec2(triangle ? 1.0 / 3 : 0.5))
+            sum += unshadowed(point.surface, point.material(), point.viewer, light, centroid(light))
                        .value;
         } else {
             const double distance =

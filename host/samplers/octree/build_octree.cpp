@@ -7,6 +7,8 @@
 #include <glm/glm.hpp>
 #include <limits>
 
+#include "lights/lights.hpp"
+
 namespace manylight {
 namespace {
 
@@ -16,7 +18,7 @@ constexpr float virtual_offset = 2;
 
 // A light as the octree takes it.
 struct Item {
-    glm::dvec3 position;  // an area's centroid
+    glm::dvec3 position;  // see Extent
     glm::dvec3 axis;      // unit, of the emission, or 0
     glm::dvec3 intensity;
     double weight;  // luminance of the intensity
@@ -30,52 +32,32 @@ struct Item {
 
 double luminance(const glm::dvec3& rgb) { return 0.2126 * rgb.r + 0.7152 * rgb.g + 0.0722 * rgb.b; }
 
-void make_area(const Light& light, bool quad, Item& item) {
-    const glm::dvec3 p(light.position);
-    const glm::dvec3 u(light.axis);
-    const glm::dvec3 v(light.edge);
-    const glm::dvec3 normal = glm::cross(u, v);
-    const double area = glm::length(normal);
-    item.position = p + (u + v) / (quad ? 2.0 : 3.0);
-    item.corners = {p, p + u, p + v, quad ? p + u + v : p};
-    item.axis = area > 0 ? normal / area : glm::dvec3(0);
-    item.intensity *= quad ? area : area / 2;
-    item.emits = (light.axis.w != 0 ? EMITS_BOTH : EMITS_FRONT) | EMITS_AREA;
-    item.offset = light.edge.w;
-}
-
 Item item_of(const Light& light, uint index) {
+    const Extent<double> extent = extent_of<double>(light);
     Item item{};
     item.light = index;
-    item.position = glm::dvec3(light.position);
-    item.corners.fill(item.position);
-    item.intensity = glm::dvec3(light.emission);
-    item.emits = EMITS_EVENLY;
-    const auto range = [&] { return light.axis.w > 0 ? 1 / (light.axis.w * light.axis.w) : 0.f; };
-    switch (static_cast<LightKind>(light.position.w)) {
-        case LIGHT_POINT:
-            item.range_inverse = range();
-            break;
-        case LIGHT_SPOT:
-            item.axis = glm::dvec3(light.axis);
-            item.emits = EMITS_CONE;
-            item.range_inverse = range();
-            item.inner = light.edge.y - 1 / light.edge.x;
-            item.outer = light.edge.y;
-            break;
-        case LIGHT_ORIENTED:
-            item.axis = glm::dvec3(light.axis);
-            item.emits = EMITS_FRONT;
-            item.offset = light.edge.w;
-            break;
-        case LIGHT_TRIANGLE:
-            make_area(light, false, item);
-            break;
-        case LIGHT_QUAD:
-            make_area(light, true, item);
-            break;
-        default:
-            break;
+    item.position = extent.centre;
+    item.corners = extent.corners;
+    item.intensity = glm::dvec3(light.emission) * extent.area;
+    if (light_has(light, TRAIT_RANGE) && light.axis.w > 0)
+        item.range_inverse = 1 / (light.axis.w * light.axis.w);
+    if (light_has(light, TRAIT_EVEN)) item.emits = EMITS_EVENLY;
+    if (light_has(light, TRAIT_CONE)) {
+        item.emits = EMITS_CONE;
+        item.axis = glm::dvec3(light.axis);
+        item.inner = light.edge.y - 1 / light.edge.x;
+        item.outer = light.edge.y;
+    }
+    if (light_has(light, TRAIT_COSINE)) {
+        item.emits = shines_to_both_sides(light) ? EMITS_BOTH : EMITS_FRONT;
+        item.axis = glm::dvec3(light.axis);
+        item.offset = light.edge.w;
+    }
+    if (light_has(light, TRAIT_AREA)) {
+        item.emits |= EMITS_AREA;
+        const glm::dvec3 normal = area_normal(light);
+        const double area = glm::length(normal);
+        item.axis = area > 0 ? normal / area : glm::dvec3(0);
     }
     item.weight = luminance(item.intensity);
     return item;
@@ -224,20 +206,19 @@ class Builder {
 
 std::vector<OctreeNode> build_octree(const std::vector<Light>& lights) {
     std::vector<Item> items;
-    std::vector<Item> directional;
+    std::vector<Item> infinite;
     for (std::size_t i = 0; i < lights.size(); ++i) {
         const Item item = item_of(lights[i], static_cast<uint>(i));
         if (!(item.weight > 0)) continue;
-        const auto kind = static_cast<LightKind>(lights[i].position.w);
-        (kind == LIGHT_DIRECTIONAL ? directional : items).push_back(item);
+        (light_has(lights[i], TRAIT_INFINITE) ? infinite : items).push_back(item);
     }
-    if (items.empty() && directional.empty() && !lights.empty()) {
-        directional.push_back(item_of(lights[0], 0));
-        directional[0].weight = 1;
+    if (items.empty() && infinite.empty() && !lights.empty()) {
+        infinite.push_back(item_of(lights[0], 0));
+        infinite[0].weight = 1;
     }
-    const std::size_t leaves = directional.size();
-    directional.insert(directional.end(), items.begin(), items.end());
-    Builder builder(std::move(directional));
+    const std::size_t leaves = infinite.size();
+    infinite.insert(infinite.end(), items.begin(), items.end());
+    Builder builder(std::move(infinite));
     for (std::size_t i = 0; i < leaves; ++i) builder.build(i, i + 1);
     if (!items.empty()) builder.build(leaves, leaves + items.size());
     return builder.take();

@@ -18,7 +18,7 @@
 
 static uint node_entry(__global const LightNode* nodes, uint node, uint slot) {
     const uint kind = nodes[node].kind;
-    const bool point = kind != NODE_GROUP && kind != LIGHT_TRIANGLE && kind != LIGHT_QUAD;
+    const bool point = kind != NODE_GROUP && !light_has(kind, TRAIT_AREA);
     return (slot << 24) | node | (point ? SINGLE_POINT : 0u);
 }
 

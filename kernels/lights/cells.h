@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Which cell of an area light a point of an emissive triangle is on.
-#ifndef MANYLIGHT_LIB_LIGHT_CELLS_H
-#define MANYLIGHT_LIB_LIGHT_CELLS_H
+#ifndef MANYLIGHT_LIGHTS_CELLS_H
+#define MANYLIGHT_LIGHTS_CELLS_H
 
 #include "lib/common.h"
 #include "shared/light.h"
