@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // What a driver makes of shared structs and random numbers; used by verify and the tests only.
-#include "lights/cells.h"
 #include "lib/random.h"
+#include "lights/cells.h"
 #include "shared/layout.h"
 
 // offsets[i]: byte offset of the i-th of SHARED_FIELDS.

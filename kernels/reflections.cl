@@ -5,10 +5,10 @@
 // Techniques for Monte Carlo Rendering", 1995); see lobe_share() in material/ggx.h, and
 // lib/reflected.h, which adds what is found here.
 #include "lib/direct.h"
-#include "lights/cells.h"
 #include "lib/random.h"
 #include "lib/textures.h"
 #include "lib/tiles.h"
+#include "lights/cells.h"
 #include "shared/reflected.h"
 
 #if HAS_REFLECTIONS && HAS_GGX
