@@ -1,31 +1,36 @@
 // SPDX-License-Identifier: MIT
 // Stage reflections.
+#include "stages/reflections.hpp"
+
 #include <cmath>
 
 #include "reference/reflections.hpp"
 #include "reference/tiles.hpp"
-#include "stages/reflections.hpp"
+#include "verify/stages.hpp"
 #include "verify/tolerances.hpp"
-#include "verify/verify.hpp"
 
 namespace manylight {
+namespace {
 
-Check Verifier::reflections() {
+Check reflections(Verifier& verifier) {
     Check check{.stage = "reflections",
                 .tolerance = "64 eps (40 operations) + change under 16 eps shifts of the ray"};
-    if (device_scene_.shading.at("HAS_REFLECTIONS") == 0) return check;
-    const PixelSample sample{2, options_.seed, false};
+    if (verifier.device_scene().shading.at("HAS_REFLECTIONS") == 0) return check;
+    const PixelSample sample{2, verifier.options().seed, false};
     // On top of other light: what is there stays.
     const float there = 0x1p-10f;
     Buffer<float4> estimates =
-        device_.upload(std::vector<float4>(item_count(tiles_), float4(there)));
-    send_out(found_);
-    ReflectionStage(device_, device_scene_).add(tiles_, sample, surfaces_, estimates);
+        verifier.device().upload(std::vector<float4>(item_count(verifier.tiles()), float4(there)));
+    verifier.send_out(verifier.found_surfaces());
+    ReflectionStage(verifier.device(), verifier.device_scene())
+        .add(verifier.tiles(), sample, verifier.surfaces(), estimates);
     const std::vector<float4> found = estimates.download();
-    reference::for_each_pixel(tiles_, [&](uint x, uint y, std::size_t item) {
+    reference::for_each_pixel(verifier.tiles(), [&](uint x, uint y, std::size_t item) {
         const auto judge = [&](bool closely) {
-            return reference::reflection(scene_, tracer_, view_.of(item), found_[item],
-                                         y * tiles_.width + x, sample.index, sample.seed, closely);
+            return reference::reflection(
+                verifier.scene(), verifier.tracer(), verifier.viewers().of(item),
+                verifier.found_surfaces()[item], y * verifier.tiles().width + x, sample.index,
+                sample.seed, closely);
         };
         reference::Reflection expected = judge(false);
         const auto difference = [&] {
@@ -46,6 +51,15 @@ Check Verifier::reflections() {
             found[item].r == there && expected.value.r == 0);
     });
     return check;
+}
+
+}  // namespace
+
+StageCheck check_reflections() {
+    return {.stages = {"reflections"},
+            .orthographic = true,
+            .receivers = true,
+            .run = single<reflections>};
 }
 
 }  // namespace manylight
