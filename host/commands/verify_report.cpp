@@ -40,14 +40,12 @@ std::string repeat_command(const VerifyArguments& arguments, const SceneChecks& 
 
 namespace {
 
-void print_failure(const Check& c, const std::string& scene, const std::string& command) {
-    if (c.passed()) return;
+void print_failure(const Check& c, const std::string& scene) {
     if (c.failed > 0)
         say("    {}{} of {} items differ; the first: {}\n", scene, c.failed, c.items,
             c.first_failure);
     else
         say("    {}{} of {} items are borderline: too many\n", scene, c.borderline, c.items);
-    say("    to repeat it: {}\n", command);
 }
 
 // A stage's checks on all scenes as one row; what fails is told scene by scene.
@@ -89,9 +87,14 @@ void print_table(const Verification& found, const VerifyArguments& arguments) {
             sum.largest, verdict, sum.tolerance);
         if (!row.failed && sum.telling == 0)
             say("    {} does not test it\n", one ? "this scene" : "no scene");
-        for (const auto& [scene, check] : row.checks)
-            print_failure(*check, one ? "" : scene->name + ": ",
-                          repeat_command(arguments, *scene, *check));
+        std::string last;  // one command repeats a scene's, however it is seen
+        for (const auto& [scene, check] : row.checks) {
+            if (check->passed()) continue;
+            print_failure(*check, one ? "" : scene->name + ": ");
+            const std::string command = repeat_command(arguments, *scene, *check);
+            if (command != last) say("    to repeat it: {}\n", command);
+            last = command;
+        }
     }
 }
 

@@ -16,7 +16,7 @@ namespace manylight {
                                          const Check& check);
 
 /// Prints a row for each stage; below one that fails, scene by scene, the first item that differs
-/// and the command that repeats the check.
+/// and, once for each scene, the command that repeats the check.
 void print_table(const Verification& found, const VerifyArguments& arguments);
 
 /// The same and which kernels were tested.
