@@ -7,7 +7,7 @@ TEST(accumulate, agrees_with_the_reference) {
     FOR_EACH_DEVICE(device)
     for (const std::string& scene : test::scene_names()) {
         SCOPED_TRACE(scene);
-        test::expect_pass(test::verifier(scene, device).accumulate());
+        test::expect_stage("accumulate", test::verifier(scene, device));
     }
 }
 

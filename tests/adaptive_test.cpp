@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "support.hpp"
+#include "verify/sampler_checks.hpp"
 
 namespace manylight {
 
@@ -11,7 +12,7 @@ TEST(adaptive, stages_agree_with_the_reference) {
     for (const std::string& scene : test::scene_names())
         for (const uint cut_size : {5u, 40u, 256u}) {
             SCOPED_TRACE(fmt::format("{}, cuts of {}", scene, cut_size));
-            for (const Check& check : test::verifier(scene, device).adaptive(cut_size))
+            for (const Check& check : check_adaptive(test::verifier(scene, device), cut_size))
                 test::expect_pass(check);
         }
 }

@@ -50,7 +50,7 @@ TEST(clusters, agree_with_the_reference) {
     FOR_EACH_DEVICE(device)
     for (const std::string& scene : test::scene_names()) {
         SCOPED_TRACE(scene);
-        test::expect_pass(test::verifier(scene, device).clusters());
+        test::expect_stage("clusters", test::verifier(scene, device));
     }
 }
 

@@ -59,6 +59,33 @@ class DeviceTest(CommandTest):
         self.refuse("verify", "--json", "none/a.json", words=["--json", "none"])
         self.refuse("verify", "", words=["name is empty"])
 
+    def test_verify_selection(self):
+        run = self.run_program("verify", "--width", 24, "--scene", "mirrors", "--stage",
+                               "contributions,pdf", "--stage", "random", "--sampler", "power")
+        self.assertEqual(re.findall(r"^(\S.*?) +\d+ +\d+ +\S+  pass", run.stdout, re.M),
+                         ["random", "contributions", "pdf (power)"])
+        self.assertIn("No error was found in what was selected. Not tested:\n"
+                      "  all that is not selected by --scene mirrors "
+                      "--stage contributions,pdf,random --sampler power", run.stdout)
+        run = self.run_program("verify", SCENES / "pinhole.glb", "--width", 24, "--stage",
+                               "reflections", "--json", "-")
+        found = json.loads(run.stdout)
+        self.assertEqual([c["stage"] for c in found["scenes"][0]["checks"]], ["reflections"])
+        self.assertEqual(found["verdict"], "incomplete")
+        self.assertEqual(found["not_tested"], ["stage reflections", "all that is not selected by "
+                                               "--stage reflections"])
+        for arguments, words in (
+                (["--stage", "gbufer"], "--stage: gbufer is not layout, random, gbuffer,"),
+                (["--stage", "gbufer"], "or reflections; did you mean gbuffer?"),
+                (["--scene", "mirror"], "or veil; did you mean mirrors?"),
+                (["--scene", "mirrors", SCENES / "pinhole.glb"],
+                 "--scene mirrors: goes without a file"),
+                (["--sampler", "rys"], "--sampler rys: no such sampler (there are: exhaustive"),
+                (["--sampler", "ris", "--stage", "pdf"],
+                 "--sampler ris: its stages are samples, of which --stage names none")):
+            with self.subTest(arguments=arguments):
+                self.refuse("verify", *arguments, words=[words])
+
     def test_bench(self):
         run = self.run_program("bench", SCENES / "pinhole.glb", "--height", 48, "--rounds", 1,
                                "--json", "b.json")

@@ -11,7 +11,7 @@ TEST(contributions, agree_with_the_reference) {
     FOR_EACH_DEVICE(device)
     for (const std::string& scene : test::scene_names()) {
         SCOPED_TRACE(scene);
-        test::expect_pass(test::verifier(scene, device).contributions());
+        test::expect_stage("contributions", test::verifier(scene, device));
     }
 }
 

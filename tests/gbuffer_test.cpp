@@ -59,8 +59,7 @@ TEST(gbuffer, agrees_with_the_reference) {
     FOR_EACH_DEVICE(device)
     for (const std::string& scene : test::scene_names()) {
         SCOPED_TRACE(scene);
-        test::expect_pass(test::verifier(scene, device).gbuffer(false));
-        test::expect_pass(test::verifier(scene, device).gbuffer(true));
+        test::expect_stage("gbuffer", test::verifier(scene, device));
     }
 }
 

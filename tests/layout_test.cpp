@@ -4,7 +4,7 @@
 namespace manylight {
 
 TEST(layout, device_agrees_on_every_field) {
-    FOR_EACH_DEVICE(device) test::expect_pass(test::verifier("points", device).layout());
+    FOR_EACH_DEVICE(device) test::expect_stage("layout", test::verifier("points", device));
 }
 
 }  // namespace manylight

@@ -7,6 +7,7 @@
 #include "stages/reflections.hpp"
 #include "support.hpp"
 #include "verify/sampler_checks.hpp"
+#include "verify/stages.hpp"
 
 namespace manylight {
 namespace {
@@ -64,7 +65,7 @@ void expect_cells(const Scene& scene, std::size_t triangles) {
     view.to_world[3] = glm::dvec4(0, 0, 20, 1);
     FOR_EACH_DEVICE(device) {
         Verifier verifier(device, scene, make_camera(view, 8, 8), options);
-        const Check check = verifier.cells();
+        const Check check = check_stage(verifier, "cells").front();
         test::expect_pass(check);
         EXPECT_GE(check.telling, 64 * triangles);
     }

@@ -8,7 +8,7 @@
 namespace manylight {
 
 TEST(random, device_gives_the_reference_numbers) {
-    FOR_EACH_DEVICE(device) test::expect_pass(test::verifier("points", device).random());
+    FOR_EACH_DEVICE(device) test::expect_stage("random", test::verifier("points", device));
 }
 
 // Chi-squared of each of the four words' top 4 bits, over each input counted up alone.

@@ -20,7 +20,7 @@ TEST(refinement, agrees_with_the_reference) {
     FOR_EACH_DEVICE(device)
     for (const std::string& scene : test::scene_names()) {
         SCOPED_TRACE(scene);
-        test::expect_pass(test::verifier(scene, device).refinement());
+        test::expect_stage("refinement", test::verifier(scene, device));
     }
 }
 

@@ -7,6 +7,8 @@
 #include <random>
 
 #include "support.hpp"
+#include "verify/sampler_checks.hpp"
+#include "verify/stages.hpp"
 
 namespace manylight {
 namespace {
@@ -98,11 +100,11 @@ TEST(reflections, agree_with_the_reference) {
         options.most_entries = 4000;
         FOR_EACH_DEVICE(device) {
             Verifier verifier(device, scene.scene, scene.camera, options);
-            for (const Check& check : verifier.all_reflections()) {
+            for (const Check& check : check_stage(verifier, "reflections")) {
                 test::expect_pass(check);
                 EXPECT_GT(check.telling, 30u);
             }
-            if (!both_sides) test::expect_pass(verifier.samples(find_sampler("ris")));
+            if (!both_sides) test::expect_pass(check_estimates(verifier, find_sampler("ris")));
         }
     }
 }

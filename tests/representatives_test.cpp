@@ -19,7 +19,7 @@ TEST(representatives, agree_with_the_reference) {
     FOR_EACH_DEVICE(device)
     for (const std::string& scene : test::scene_names()) {
         SCOPED_TRACE(scene);
-        test::expect_pass(test::verifier(scene, device).representatives());
+        test::expect_stage("representatives", test::verifier(scene, device));
     }
 }
 

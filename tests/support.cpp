@@ -9,6 +9,7 @@
 #include <filesystem>
 
 #include "scene/gltf/load.hpp"
+#include "verify/stages.hpp"
 
 namespace manylight::test {
 namespace {
@@ -200,6 +201,12 @@ void expect_pass(const Check& check) {
     EXPECT_TRUE(check.passed()) << check.stage << ": " << check.failed << " of " << check.items
                                 << " items fail and " << check.borderline
                                 << " are borderline; the first: " << check.first_failure;
+}
+
+void expect_stage(const std::string& stage, Verifier& verifier) {
+    const std::vector<Check> checks = check_stage(verifier, stage);
+    EXPECT_FALSE(checks.empty()) << stage;
+    for (const Check& check : checks) expect_pass(check);
 }
 
 FrameResult render(const Device& device, const TestScene& scene, RenderOptions options) {

@@ -49,6 +49,9 @@ struct TestScene {
 /// Expects a check to pass; the message tells the first failure.
 void expect_pass(const Check& check);
 
+/// Expects all checks of a stage to pass, of which there are some.
+void expect_stage(const std::string& stage, Verifier& verifier);
+
 /// Renders a test scene; options' size is the scene's.
 [[nodiscard]] FrameResult render(const Device& device, const TestScene& scene,
                                  RenderOptions options);

@@ -3,21 +3,12 @@
 // precision decides little.
 #include "device/kernel_sources.hpp"
 #include "support.hpp"
-#include "verify/sampler_checks.hpp"
 #include "verify/scene_maker.hpp"
 #include "verify/scenes.hpp"
 #include "verify/verify_all.hpp"
 
 namespace manylight {
 namespace {
-
-VerifyOptions small_options() {
-    VerifyOptions options;
-    options.width = 40;
-    options.height = 34;
-    options.most_entries = 3'000;
-    return options;
-}
 
 const KernelCode& kernel_named(const std::vector<KernelCode>& kernels, std::string_view file,
                                std::string_view name) {
@@ -150,30 +141,6 @@ TEST(verify, names_features_that_are_left_out) {
 }
 
 // What follows is about the host's judgement, for which one device will do.
-
-// The device has other lights than the reference: by a thousandth brighter.
-TEST(verify, tells_a_wrong_device) {
-    {
-        const Device& device = test::devices().back();
-        VerifyScene made = std::move(verify_scenes().front());
-        const VerifyOptions options = small_options();
-        Verifier verifier(device, made.scene, make_camera(made.view, options.width, options.height),
-                          options);
-        for (Light& light : made.scene.lights) light.emission *= float4(1.001f, 1.001f, 1.001f, 1);
-        Verification found{{}, Coverage(device.form().lanes > 1), true};
-        found.scenes.push_back({made.name, "", 0, 0, 0, 0, verifier.all()});
-        std::set<std::string> failed;
-        for (const Check& check : found.scenes[0].checks)
-            if (!check.passed()) failed.insert(check.stage);
-        for (const Sampler& s : all_samplers())
-            if (checks_of(s).reference != nullptr) {
-                EXPECT_TRUE(failed.contains(fmt::format("samples ({})", s.name))) << s.name;
-            }
-        EXPECT_TRUE(failed.contains("contributions"));
-        EXPECT_FALSE(failed.contains("gbuffer"));
-        EXPECT_EQ(found.verdict(), "The device does NOT compute correctly.");
-    }
-}
 
 // Rays that pass by another chance than the material says.
 TEST(verify, tells_a_wrong_share) {

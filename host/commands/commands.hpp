@@ -12,6 +12,7 @@
 #include "pipeline/frame.hpp"
 #include "scene/builtin/builtin.hpp"
 #include "scene/gltf/load.hpp"
+#include "verify/selection.hpp"
 
 namespace manylight {
 
@@ -71,6 +72,7 @@ struct VerifyArguments {
     ClusterOptions clusters;
     uint seed = 1;
     std::string json;  // file, or - for standard output
+    Selection only;
 };
 
 struct BuiltinArguments {

@@ -6,132 +6,19 @@
 #include <sstream>
 
 #include "commands/commands.hpp"
+#include "commands/options/words.hpp"
+#include "commands/verify_report.hpp"
 #include "error.hpp"
 #include "output/progress.hpp"
 #include "output/write_file.hpp"
 #include "print.hpp"
+#include "verify/stages.hpp"
 #include "verify/verify_all.hpp"
 
 namespace manylight {
 namespace {
 
 using nlohmann::json;
-
-void print_failure(const Check& c, const std::string& scene) {
-    if (c.failed > 0)
-        say("    {}{} of {} items differ; the first: {}\n", scene, c.failed, c.items,
-            c.first_failure);
-    else if (!c.passed())
-        say("    {}{} of {} items are borderline: too many\n", scene, c.borderline, c.items);
-}
-
-// A stage's checks on all scenes as one row; what fails is told scene by scene.
-struct StageRow {
-    Check sum;
-    bool failed = false;
-    std::vector<std::pair<std::string, const Check*>> checks;  // with their scenes
-};
-
-std::vector<StageRow> rows_of(const Verification& found) {
-    std::vector<StageRow> rows;
-    for (const SceneChecks& scene : found.scenes)
-        for (const Check& c : scene.checks) {
-            auto row = std::ranges::find_if(
-                rows, [&](const StageRow& r) { return r.sum.stage == c.stage; });
-            if (row == rows.end())
-                row = rows.insert(
-                    rows.end(), StageRow{{.stage = c.stage, .tolerance = c.tolerance}, false, {}});
-            row->sum.items += c.items;
-            row->sum.telling += c.telling;
-            row->sum.borderline += c.borderline;
-            row->sum.largest = std::max(row->sum.largest, c.largest);
-            row->failed = row->failed || !c.passed();
-            row->checks.emplace_back(scene.name, &c);
-        }
-    return rows;
-}
-
-void print_table(const Verification& found) {
-    say("{:<32} {:>8} {:>10} {:>10}  {:<6} {}\n", "stage", "items", "borderline", "largest", "",
-        "tolerance");
-    const bool one = found.scenes.size() == 1;
-    for (const StageRow& row : rows_of(found)) {
-        const Check& sum = row.sum;
-        const char* verdict = row.failed ? "FAIL" : sum.telling > 0 ? "pass" : "-";
-        say("{:<32} {:>8} {:>10} {:>10.3g}  {:<6} {}\n", sum.stage, sum.items, sum.borderline,
-            sum.largest, verdict, sum.tolerance);
-        if (!row.failed && sum.telling == 0)
-            say("    {} does not test it\n", one ? "this scene" : "no scene");
-        for (const auto& [scene, check] : row.checks)
-            print_failure(*check, one ? "" : scene + ": ");
-    }
-}
-
-json to_json(const Check& c) {
-    json out = {{"stage", c.stage},           {"items", c.items},
-                {"telling", c.telling},       {"failed", c.failed},
-                {"borderline", c.borderline}, {"largest", c.largest},
-                {"tolerance", c.tolerance},   {"verdict", c.tested() ? "pass" : "not tested"}};
-    if (!c.passed()) out["verdict"] = "fail";
-    if (c.failed > 0) out["first_failure"] = c.first_failure;
-    return out;
-}
-
-json kernels_json(const Coverage& coverage) {
-    json out = json::array();
-    for (const KernelCode& kernel : all_kernels()) {
-        const char* state = "not tested";
-        switch (coverage.state(kernel)) {
-            case Coverage::State::tested:
-                state = "tested";
-                break;
-            case Coverage::State::not_tested:
-                break;
-            case Coverage::State::other_form:
-                state = "of another form";
-                break;
-            case Coverage::State::not_rendering:
-                state = "not part of rendering";
-                break;
-        }
-        out.push_back({{"file", kernel.file},
-                       {"kernel", kernel.name},
-                       {"state", state},
-                       {"features", kernel.features},
-                       {"not_tested_with", coverage.missing(kernel, true)},
-                       {"not_tested_without", coverage.missing(kernel, false)}});
-    }
-    return out;
-}
-
-json to_json(const Verification& found, const Device& device) {
-    const DeviceInfo& info = device.info();
-    const std::vector<std::string> left = found.not_tested();
-    json scenes = json::array();
-    for (const SceneChecks& scene : found.scenes) {
-        json checks = json::array();
-        for (const Check& c : scene.checks) checks.push_back(to_json(c));
-        scenes.push_back({{"scene", scene.name},
-                          {"summary", scene.summary},
-                          {"triangles", scene.triangles},
-                          {"lights", scene.lights},
-                          {"width", scene.width},
-                          {"height", scene.height},
-                          {"checks", std::move(checks)}});
-    }
-    return {{"version", MANYLIGHT_VERSION},
-            {"device", info.name},
-            {"platform", info.platform},
-            {"opencl", info.version},
-            {"driver", info.driver},
-            {"lanes", device.form().lanes},
-            {"scenes", std::move(scenes)},
-            {"kernels", kernels_json(found.coverage)},
-            {"not_tested", left},
-            {"verdict", !found.passed() ? "wrong"
-                        : left.empty()  ? "correct"
-                                        : "incomplete"}};
-}
 
 void print_device(const DeviceInfo& info) {
     say("{}: {}, {}, driver {}\n", info.name, info.platform, info.version, info.driver);
@@ -140,7 +27,7 @@ void print_device(const DeviceInfo& info) {
 }
 
 Verification verify_file(const LoadedScene& loaded, Device device, const VerifyOptions& options) {
-    Verification found{{}, Coverage(device.form().lanes > 1), false};
+    Verification found{{}, Coverage(device.form().lanes > 1), false, options.only};
     SceneChecks scene{loaded.scene.file,
                       "",
                       loaded.scene.seen_triangle_count(),
@@ -169,6 +56,15 @@ void check_json(const VerifyArguments& arguments) {
         throw InputError("--json {}: is the scene itself", arguments.json);
 }
 
+void check_scenes(const VerifyArguments& arguments) {
+    const std::vector<std::string>& scenes = arguments.only.scenes;
+    if (scenes.empty()) return;
+    if (!arguments.scene.file.empty())
+        throw InputError("--scene {}: goes without a file", scenes.front());
+    for (const std::string& scene : scenes)
+        options::require_word("--scene", scene, verified_scenes());
+}
+
 // What shows a file, or how it is read.
 void refuse_without_file(const SceneArguments& scene) {
     if (!scene.camera.empty() || !scene.variant.empty() || scene.emitter_points || scene.seconds ||
@@ -181,14 +77,17 @@ void refuse_without_file(const SceneArguments& scene) {
 
 }  // namespace
 
-int run_verify(const VerifyArguments& arguments) {
-    SceneArguments scene = arguments.scene;
+int run_verify(const VerifyArguments& given) {
+    VerifyArguments arguments = given;
+    SceneArguments& scene = arguments.scene;
     const bool built_in = scene.file.empty();
     check_json(arguments);
     if (built_in) refuse_without_file(scene);
+    check_scenes(arguments);
     VerifyOptions options;
     options.seed = arguments.seed;
     options.clusters = arguments.clusters;
+    options.only = arguments.only;
     std::optional<LoadedScene> loaded;
     if (!built_in) {
         if (scene.width == 0 && scene.height == 0) scene.width = 96;
@@ -203,6 +102,11 @@ int run_verify(const VerifyArguments& arguments) {
         options.most_entries = 10'000;
     }
     Device device = Device::open(scene.device, scene.threads, scene.lanes);
+    // As commands that repeat a check name all that.
+    if (scene.device.empty()) scene.device = fmt::to_string(select_device(""));
+    scene.lanes = device.form().lanes;
+    scene.width = options.width;
+    scene.height = options.height;
     const bool quiet = arguments.json == "-";
     if (!quiet) print_device(device.info());
     const Verification found = [&] {
@@ -215,14 +119,14 @@ int run_verify(const VerifyArguments& arguments) {
             say("{}: {} triangles, {} lights, {} x {} pixels{}{}\n", s.name, s.triangles, s.lights,
                 s.width, s.height, s.summary.empty() ? "" : ": ", s.summary);
         say("\n");
-        print_table(found);
+        print_table(found, arguments);
         say("\nlargest: the largest difference from the scalar reference, over its tolerance (eps: "
             "2^-23).\nborderline: items that rounding of their rays' ends decides either "
             "way.\n");
         std::istringstream verdict(found.verdict());
         for (std::string line; std::getline(verdict, line);) say("{}\n", line);
     }
-    if (!arguments.json.empty()) write_json(arguments.json, to_json(found, device));
+    if (!arguments.json.empty()) write_json(arguments.json, to_json(found, arguments, device));
     return found.passed() ? 0 : 3;
 }
 

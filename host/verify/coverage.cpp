@@ -39,9 +39,6 @@ std::vector<std::string> names_after(std::string_view source, std::string_view b
     return names;
 }
 
-// "gbuffer" of "gbuffer (jittered)".
-std::string stage_of(const Check& check) { return check.stage.substr(0, check.stage.find(" (")); }
-
 // Whether a check judges what a kernel makes.
 bool judges(const Check& check, const Launched& kernel) {
     const std::string stage = stage_of(check);
@@ -110,10 +107,15 @@ std::vector<std::string> Coverage::missing(const KernelCode& kernel, bool with) 
     return names;
 }
 
-std::vector<std::string> Coverage::not_tested(bool without) const {
+std::vector<std::string> Coverage::silent_stages() const {
     std::vector<std::string> out;
     for (const std::string& stage : stages_)
         if (!told_.contains(stage)) out.push_back("stage " + stage);
+    return out;
+}
+
+std::vector<std::string> Coverage::not_tested(bool without) const {
+    std::vector<std::string> out = silent_stages();
     std::map<std::string, std::vector<std::string>> by_feature;  // kernels that lack it
     std::map<std::string, std::size_t> users;                    // kernels that know it
     for (const KernelCode& kernel : all_kernels()) {

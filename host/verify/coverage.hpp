@@ -37,6 +37,9 @@ class Coverage {
     /// The features of a tested kernel that it was never tested with, or never without.
     [[nodiscard]] std::vector<std::string> missing(const KernelCode& kernel, bool with) const;
 
+    /// In words: stages whose checks told nothing.
+    [[nodiscard]] std::vector<std::string> silent_stages() const;
+
     /// In words: stages whose checks told nothing, kernels and features that are not tested.
     /// `without`: name as well what was never left out.
     [[nodiscard]] std::vector<std::string> not_tested(bool without) const;

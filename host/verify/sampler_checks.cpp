@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "samplers/rows.hpp"
+#include "verify/stages.hpp"
 
 namespace manylight {
 
@@ -24,7 +25,30 @@ const Arguments& tables_of(const LightSampler& sampler) {
 }
 
 std::vector<Check> check_samples(Verifier& verifier, const Sampler& sampler) {
-    return {verifier.samples(sampler)};
+    return {check_estimates(verifier, sampler)};
+}
+
+// The row of stages: all of all samplers, or of those that are selected.
+StageCheck check_samplers() {
+    StageCheck row{.receivers = true, .of_samplers = true, .run = [](Verifier& verifier) {
+                       std::vector<Check> checks;
+                       const Selection& only = verifier.options().only;
+                       for (const Sampler& sampler : all_samplers()) {
+                           const SamplerChecks& own = checks_of(sampler);
+                           if (!only.takes_sampler(sampler.name) || !only.takes_one_of(own.stages))
+                               continue;
+                           for (Check& check : own.run(verifier, sampler)) {
+                               check.sampler = sampler.name;
+                               checks.push_back(std::move(check));
+                           }
+                       }
+                       return checks;
+                   }};
+    for (const Sampler& sampler : all_samplers())
+        for (const std::string_view stage : checks_of(sampler).stages)
+            if (std::ranges::find(row.stages, stage) == row.stages.end())
+                row.stages.push_back(stage);
+    return row;
 }
 
 }  // namespace manylight

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <string_view>
 #include <vector>
 
 #include "samplers/one_light/one_light.hpp"
@@ -23,7 +24,9 @@ struct SamplerChecks {
     /// context's.
     std::unique_ptr<reference::Sampler> (*reference)(const LightSampler& sampler,
                                                      const CheckContext& context) = nullptr;
-    /// All checks that the sampler has, stage by stage.
+    /// The stages that its checks are of, in order.
+    std::vector<std::string_view> stages = {"samples"};
+    /// All of its checks, stage by stage.
     std::vector<Check> (*run)(Verifier& verifier, const Sampler& sampler) = nullptr;
 };
 
@@ -33,7 +36,19 @@ struct SamplerChecks {
 /// The buffers that a sampler draws from, of one that draws lights one at a time.
 [[nodiscard]] const Arguments& tables_of(const LightSampler& sampler);
 
+/// Stage samples of a sampler that has a reference.
+[[nodiscard]] Check check_estimates(Verifier& verifier, const Sampler& sampler);
+
 /// For `run`: stage samples alone.
 [[nodiscard]] std::vector<Check> check_samples(Verifier& verifier, const Sampler& sampler);
+
+/// Stage pdf: CDFs of rows that are mixed by `shares`, of the contribution matrix where
+/// `clustered`, else one row by power.
+[[nodiscard]] Check check_pdf(Verifier& verifier, std::string_view sampler, const Shares& shares,
+                              bool clustered);
+
+/// The stages of sampler adaptive with cuts of `cut_size` nodes at most: cuts, visibility, weights,
+/// samples.
+[[nodiscard]] std::vector<Check> check_adaptive(Verifier& verifier, uint cut_size);
 
 }  // namespace manylight

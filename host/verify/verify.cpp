@@ -8,7 +8,7 @@
 
 #include "reference/random.hpp"
 #include "scene/alpha.hpp"
-#include "verify/sampler_checks.hpp"
+#include "verify/stages.hpp"
 
 namespace manylight {
 
@@ -39,6 +39,8 @@ void Check::excuse_agreeing(std::size_t agreeing,
         before + (excused - before) * static_cast<double>(agreeing) / static_cast<double>(judged);
 }
 
+std::string stage_of(const Check& check) { return check.stage.substr(0, check.stage.find(" (")); }
+
 namespace {
 
 constexpr std::size_t most_matrix_entries = std::size_t{1} << 26;
@@ -57,6 +59,12 @@ const Scene& copy_to_change(const Scene& scene, std::optional<Scene>& copy) {
     return *copy;
 }
 
+// Where the light of points goes that are no pixels.
+DeviceScene with_outgoing(DeviceScene scene, const Buffer<Outgoing>& outgoing, bool receivers) {
+    if (receivers) set_outgoing(scene, outgoing);
+    return scene;
+}
+
 }  // namespace
 
 Verifier::Verifier(Device device, const Scene& scene, const Camera& camera,
@@ -70,9 +78,12 @@ Verifier::Verifier(Device device, const Scene& scene, const Camera& camera,
       reach_(reach_of(scene, camera)),
       bvh_(build_wide_bvh(scene, device.form().bvh_width, device.form().bvh_width, reach_)),
       points_(item_count(all_tiles(options.width, options.height, 128))),
-      device_scene_(upload_scene(device_, scene_, bvh_, camera, nullptr, 2 * points_)),
+      outgoing_(options.receivers ? device_.allocate<Outgoing>(points_) : Buffer<Outgoing>()),
+      device_scene_(with_outgoing(upload_scene(device_, scene_, bvh_, camera, nullptr, 2 * points_),
+                                  outgoing_, options.receivers)),
       tree_(build_light_tree(scene.lights)),
-      tree_scene_(upload_scene(device_, scene_, bvh_, camera, &tree_)),
+      tree_scene_(with_outgoing(upload_scene(device_, scene_, bvh_, camera, &tree_), outgoing_,
+                                options.receivers)),
       tracer_(scene_),
       surfaces_(device_.allocate<Surface>(item_count(tiles_))),
       clustering_(device_, device_scene_, options.clusters, tiles_.count) {
@@ -81,13 +92,7 @@ Verifier::Verifier(Device device, const Scene& scene, const Camera& camera,
     GBufferStage(device_, device_scene_).trace(tiles_, {}, surfaces_);
     keep_materials();
     found_ = surfaces_.download();
-    if (options.receivers) {
-        outgoing_ = device_.allocate<Outgoing>(points_);
-        set_outgoing(device_scene_, outgoing_);
-        set_outgoing(tree_scene_, outgoing_);
-        clustering_ = Clustering(device_, device_scene_, options.clusters, tiles_.count);
-        send_out(found_);
-    }
+    send_out(found_);
     if (scene.lights.empty()) return;
     clustering_.build(tiles_, surfaces_, [](std::size_t) {});
     const std::vector<uint> words =
@@ -129,21 +134,6 @@ Buffer<Surface> Verifier::trace(const Tiles& tiles, const PixelSample& sample) {
     return surfaces;
 }
 
-std::vector<Check> Verifier::all() {
-    std::vector<Check> checks = {
-        layout(),          random(),        gbuffer(false), gbuffer(true), clusters(),
-        representatives(), contributions(), refinement(),   accumulate(),  cells()};
-    for (Check& check : lighting()) checks.push_back(std::move(check));
-    return checks;
-}
-
-std::vector<Check> Verifier::lighting() {
-    std::vector<Check> checks;
-    for (const Sampler& sampler : all_samplers())
-        for (Check& check : checks_of(sampler).run(*this, sampler))
-            checks.push_back(std::move(check));
-    for (Check& check : all_reflections()) checks.push_back(std::move(check));
-    return checks;
-}
+std::vector<Check> Verifier::all() { return run_stages(*this, selected_stages(options_.only)); }
 
 }  // namespace manylight

@@ -12,6 +12,7 @@
 #include "samplers/contribution/clustering.hpp"
 #include "samplers/table.hpp"
 #include "stages/gbuffer.hpp"
+#include "verify/selection.hpp"
 
 namespace manylight {
 
@@ -26,6 +27,7 @@ struct Check {
     double largest = 0;              // difference over tolerance, of the items that were compared
     std::string tolerance;           // in words, with its reason
     std::string first_failure = {};  // the first failed item and both values
+    std::string sampler = {};        // that the stage was judged for
 
     /// Whether the scene says anything about the stage.
     [[nodiscard]] bool tested() const { return telling > 0 || failed > 0; }
@@ -48,6 +50,9 @@ struct Check {
     void excuse_agreeing(std::size_t agreeing, const std::function<int(std::size_t)>& undecided);
 };
 
+/// "samples" of "samples (ris)": the stage's name in all rooms.
+[[nodiscard]] std::string stage_of(const Check& check);
+
 struct VerifyOptions {
     unsigned width = 96;
     unsigned height = 96;
@@ -57,38 +62,18 @@ struct VerifyOptions {
     // Points are no pixels to the stages that light them: their light goes in directions drawn at
     // random, with throughputs drawn at random.
     bool receivers = false;
+    Selection only;
 };
 
-/// Runs the stages on a device and judges each by the reference. The scene's lights are complete.
+/// A scene on a device and in the reference: what checks of stages share (see stages.hpp). The
+/// scene's lights are complete.
 class Verifier {
   public:
     Verifier(Device device, const Scene& scene, const Camera& camera, const VerifyOptions& options);
 
-    [[nodiscard]] Check layout();
-    [[nodiscard]] Check random();
-    [[nodiscard]] Check gbuffer(bool jitter);
-    [[nodiscard]] Check clusters();
-    [[nodiscard]] Check representatives();
-    [[nodiscard]] Check contributions();
-    [[nodiscard]] Check refinement();
-    /// CDFs of rows that are mixed by `shares`: of the contribution matrix where `clustered`, else
-    /// one row by power.
-    [[nodiscard]] Check pdf(std::string_view sampler, const Shares& shares, bool clustered);
-    [[nodiscard]] Check samples(const Sampler& sampler);
-    /// Which cells of area lights points of the scene's emissive triangles are on.
-    [[nodiscard]] Check cells();
-    /// Beside the light samples of a sampler whose row has a closed form, or of no sampler.
-    [[nodiscard]] Check reflections(const Sampler* sampler = nullptr);
-    /// Beside no sampler, and beside each that has one.
-    [[nodiscard]] std::vector<Check> all_reflections();
-    [[nodiscard]] Check accumulate();
+    /// The checks of all stages that the options select.
+    [[nodiscard]] std::vector<Check> all();
 
-    [[nodiscard]] Check seen_lights();
-
-    /// Sampler adaptive with cuts of `cut_size` nodes at most: cuts, visibility, weights, samples.
-    [[nodiscard]] std::vector<Check> adaptive(uint cut_size);
-
-    // What a sampler's own checks need.
     [[nodiscard]] Device& device() { return device_; }
     [[nodiscard]] const Scene& scene() const { return scene_; }
     [[nodiscard]] const std::vector<Light>& lights() const { return scene_.lights; }
@@ -106,37 +91,37 @@ class Verifier {
         return sampler.tree ? tree_scene_ : device_scene_;
     }
 
-    /// Those of every sampler in the table, and reflections beside them.
-    [[nodiscard]] std::vector<Check> lighting();
+    [[nodiscard]] const DeviceScene& device_scene() const { return device_scene_; }
+    [[nodiscard]] const DeviceScene& tree_scene() const { return tree_scene_; }
+    [[nodiscard]] const Camera& camera() const { return camera_; }
+    /// The largest coordinate that a ray may meet, m.
+    [[nodiscard]] float reach() const { return reach_; }
+    /// Of the pixels' centres; not built where there is no light.
+    [[nodiscard]] const Clustering& clustering() const { return clustering_; }
+    /// Its contributions, [region][light], as they were before they became a PDF.
+    [[nodiscard]] const std::vector<float>& matrix() const { return matrix_; }
 
-    /// All of them.
-    [[nodiscard]] std::vector<Check> all();
-
-  private:
-    [[nodiscard]] Tiles tiles_to_sample(uint light_samples) const;
-    void accumulate(Check& check, bool grouped, bool by_passes);
-    void check_surface(Check& check, const Surface& found, uint x, uint y, bool jitter);
-    void check_offset(Check& check, const Surface& found, const reference::Ray& ray,
-                      const reference::Hit& hit, double shift, const std::string& where);
-    void check_material(Check& check, const Surface& found, const reference::Ray& ray,
-                        const reference::Hit& hit, double shift, const std::string& where);
-    // Surfaces beside surfaces_; where the scene varies materials, the last ones' are in scene_.
+    /// Surfaces beside surfaces(); where the scene varies materials, the last ones' are in scene().
     [[nodiscard]] Buffer<Surface> trace(const Tiles& tiles, const PixelSample& sample);
+    /// The same for a check that traces by itself: where in `materials` its points' are (see
+    /// GBufferStage), and what takes them into scene() afterwards.
+    [[nodiscard]] std::size_t points() const { return points_; }
     void keep_materials();
-    // Where the light of a batch's points is to go, for what is launched and judged next.
+    /// Where the light of a batch's points is to go, for what is launched and judged next.
     void send_out(const std::vector<Surface>& points);
 
+  private:
     Device device_;
     std::optional<Scene> varied_;  // a copy that is changed, where the scene needs one
     const Scene& scene_;
     Camera camera_;
     reference::Viewers view_;  // of the points that are lit
-    Buffer<Outgoing> outgoing_;
     VerifyOptions options_;
     Tiles tiles_;  // those in the image's middle, as many as the matrix may have
     float reach_;
     WideBvh bvh_;
-    std::size_t points_;  // that surfaces_ have at most, and those beside them
+    std::size_t points_;         // that surfaces_ have at most, and those beside them
+    Buffer<Outgoing> outgoing_;  // of receivers
     DeviceScene device_scene_;
     LightTree tree_;
     DeviceScene tree_scene_;  // with the lights in the tree's order

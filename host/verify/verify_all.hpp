@@ -15,6 +15,7 @@ struct SceneChecks {
     std::size_t triangles = 0, lights = 0;
     unsigned width = 0, height = 0;
     std::vector<Check> checks;
+    std::string scene = {};  // as --scene names it; empty: the file's
 };
 
 /// What was found on a device.
@@ -23,19 +24,24 @@ struct Verification {
     Coverage coverage;
 
     bool complete = false;  // whether the scenes are meant to leave nothing out
+    Selection only = {};    // what was judged
 
     /// No check failed.
     [[nodiscard]] bool passed() const;
     /// What no scene told anything about, in words.
     [[nodiscard]] std::vector<std::string> not_tested() const;
     /// Says that the device computes correctly only where nothing failed and nothing was left out;
-    /// otherwise that something failed, or what was left out.
+    /// otherwise that something failed, or what was left out, by a selection too.
     [[nodiscard]] std::string verdict() const;
 };
 
-/// Judges every stage on every scene of verify_scenes(), each seen with perspective and without,
-/// and the chance by which rays pass what is partly there; images have the options' size.
-/// `progress` gets the share that is done.
+/// The scenes of verify_all() as --scene names them.
+[[nodiscard]] std::vector<std::string> verified_scenes();
+
+/// Judges every stage on every scene of verify_scenes(), each seen with perspective and, where a
+/// stage's row says so, without, and the chance by which rays pass what is partly there: of all
+/// that, what the options select. Images have the options' size. `progress` gets the share that is
+/// done.
 [[nodiscard]] Verification verify_all(Device device, const VerifyOptions& options,
                                       const std::function<void(double)>& progress);
 

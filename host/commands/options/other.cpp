@@ -9,6 +9,8 @@
 #include "commands/options/scene.hpp"
 #include "commands/options/values.hpp"
 #include "commands/options/words.hpp"
+#include "verify/sampler_checks.hpp"
+#include "verify/stages.hpp"
 
 namespace manylight::options {
 
@@ -54,32 +56,82 @@ void add_inspect(CLI::App& app, std::function<int()>& run) {
     });
 }
 
+namespace {
+
+std::vector<std::string> words_of_stages() {
+    const std::vector<std::string_view> names = stage_names();
+    return {names.begin(), names.end()};
+}
+
+// Lines of at most 80 characters.
+std::string stage_list() {
+    std::string text;
+    std::size_t column = 2;
+    for (const std::string& name : words_of_stages()) {
+        const bool first = text.empty();
+        const bool breaks = column + name.size() + 3 > 80;
+        if (!first) text += breaks ? ",\n  " : ", ";
+        column = breaks ? 2 + name.size() : column + name.size() + 2;
+        text += name;
+    }
+    return text;
+}
+
+}  // namespace
+
+void add_verify_options(CLI::App& command, VerifyArguments& arguments) {
+    command
+        .add_option("file", arguments.scene.file,
+                    "glTF 2.0 scene, .gltf or .glb (default: scenes of the program's own that "
+                    "together use every kernel)")
+        ->check(not_empty());
+    add_view(command, arguments.scene);
+    command.add_option("--json", arguments.json,
+                       "file for all that is found, as JSON; -: standard output, alone");
+    command.add_option("--seed", arguments.seed, "of the random numbers")
+        ->check(whole(0, largest_uint))
+        ->capture_default_str();
+    const auto add_list = [&](const char* name, std::vector<std::string>& names, const char* help) {
+        command.add_option(name, names, help)->delimiter(',')->allow_extra_args(false);
+    };
+    Selection& only = arguments.only;
+    add_list("--stage", only.stages, "judge these stages alone, see below");
+    add_list("--sampler", only.samplers,
+             "judge these samplers' stages alone, see 'manylight samplers'");
+    add_list("--scene", only.scenes,
+             "without a file: take these of the program's own scenes alone, as the table names "
+             "them");
+    add_clusters(command, arguments.clusters);
+}
+
 void add_verify(CLI::App& app, std::function<int()>& run) {
     auto arguments = std::make_shared<VerifyArguments>();
     CLI::App* command =
         app.add_subcommand("verify", "judge every kernel on a device by the scalar reference");
-    command
-        ->add_option("file", arguments->scene.file,
-                     "glTF 2.0 scene, .gltf or .glb (default: scenes of the program's own that "
-                     "together use every kernel)")
-        ->check(not_empty());
-    add_view(*command, arguments->scene);
-    command->add_option("--json", arguments->json,
-                        "file for all that is found, as JSON; -: standard output, alone");
-    command->add_option("--seed", arguments->seed, "of the random numbers")
-        ->check(whole(0, largest_uint))
-        ->capture_default_str();
-    add_clusters(*command, arguments->clusters);
+    add_verify_options(*command, *arguments);
     command->footer(
-        "\nExits with 0 if all stages pass, with 3 otherwise. Says that the device computes "
+        "\nStages:\n  " + stage_list() +
+        "\n\nExits with 0 if all stages pass, with 3 otherwise. Says that the device computes "
         "correctly only\nwhere no kernel and no feature was left out, which takes the program's "
         "own scenes.\n\nExamples:\n"
         "  manylight verify\n"
         "  manylight verify --device intel --json intel.json\n"
         "  manylight verify --device-form gpu --json - | jq .verdict\n"
+        "  manylight verify --stage gbuffer,contributions --scene mirrors\n"
+        "  manylight verify --sampler ris\n"
         "  manylight verify scene.glb\n"
         "  manylight verify scene.glb --device intel --width 128\n");
-    command->callback([&run, arguments] { run = [arguments] { return run_verify(*arguments); }; });
+    command->callback([&run, arguments] {
+        for (const std::string& stage : arguments->only.stages)
+            require_word("--stage", stage, words_of_stages());
+        for (const std::string& name : arguments->only.samplers) {
+            const std::vector<std::string_view>& own = checks_of(find_sampler(name)).stages;
+            if (!arguments->only.takes_one_of(own))
+                throw InputError("--sampler {}: its stages are {}, of which --stage names none",
+                                 name, fmt::join(own, ", "));
+        }
+        run = [arguments] { return run_verify(*arguments); };
+    });
 }
 
 void add_bench(CLI::App& app, std::function<int()>& run) {

@@ -88,6 +88,13 @@ void require(const CLI::App& command, bool is_there, const std::string& what) {
                      what, command.get_name());
 }
 
+void require_word(const std::string& option, const std::string& word,
+                  const std::vector<std::string>& words) {
+    if (std::ranges::find(words, word) != words.end()) return;
+    throw InputError("{}: {} is not {}{}", option, word, list_words(words),
+                     suggestion(word, words));
+}
+
 void require_scene(const CLI::App& command, const SceneArguments& scene) {
     require(command, !scene.file.empty(), "the scene's file");
 }

@@ -24,6 +24,10 @@ namespace manylight::options {
 /// Throws InputError for a missing argument: `what` it is.
 void require(const CLI::App& command, bool is_there, const std::string& what);
 
+/// Throws InputError for a word, given by `option`, that is none of `words`.
+void require_word(const std::string& option, const std::string& word,
+                  const std::vector<std::string>& words);
+
 void require_scene(const CLI::App& command, const SceneArguments& scene);
 
 }  // namespace manylight::options

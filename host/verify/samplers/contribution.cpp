@@ -18,17 +18,20 @@ std::unique_ptr<reference::Sampler> make_reference(const LightSampler& sampler,
 
 SamplerChecks checks_contribution() {
     return {.reference = make_reference,
+            .stages = {"pdf", "samples"},
             .run = [](Verifier& verifier, const Sampler& sampler) -> std::vector<Check> {
-                return {verifier.pdf(sampler.name, paper_shares, true), verifier.samples(sampler)};
+                return {check_pdf(verifier, sampler.name, paper_shares, true),
+                        check_estimates(verifier, sampler)};
             }};
 }
 
 SamplerChecks checks_contribution_defensive() {
-    return {
-        .reference = make_reference,
-        .run = [](Verifier& verifier, const Sampler& sampler) -> std::vector<Check> {
-            return {verifier.pdf(sampler.name, defensive_shares, true), verifier.samples(sampler)};
-        }};
+    return {.reference = make_reference,
+            .stages = {"pdf", "samples"},
+            .run = [](Verifier& verifier, const Sampler& sampler) -> std::vector<Check> {
+                return {check_pdf(verifier, sampler.name, defensive_shares, true),
+                        check_estimates(verifier, sampler)};
+            }};
 }
 
 }  // namespace manylight

@@ -81,9 +81,10 @@ Check check_neighbours(Verifier& verifier, const Sampler& sampler) {
 
 SamplerChecks checks_contribution_cached() {
     return {.reference = make_reference,
+            .stages = {"pdf", "neighbours", "samples"},
             .run = [](Verifier& verifier, const Sampler& sampler) -> std::vector<Check> {
-                return {verifier.pdf(sampler.name, defensive_shares, true),
-                        check_neighbours(verifier, sampler), verifier.samples(sampler)};
+                return {check_pdf(verifier, sampler.name, defensive_shares, true),
+                        check_neighbours(verifier, sampler), check_estimates(verifier, sampler)};
             }};
 }
 

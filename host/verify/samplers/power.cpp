@@ -11,8 +11,10 @@ SamplerChecks checks_power() {
             return std::make_unique<reference::ByPower>(
                 tables_of(sampler).download<uint>("power_cdf"));
         },
+        .stages = {"pdf", "samples"},
         .run = [](Verifier& verifier, const Sampler& sampler) -> std::vector<Check> {
-            return {verifier.pdf("power", {.power = 1}, false), verifier.samples(sampler)};
+            return {check_pdf(verifier, "power", {.power = 1}, false),
+                    check_estimates(verifier, sampler)};
         }};
 }
 

@@ -69,8 +69,9 @@ Check check_histories(Verifier& verifier, const Sampler& sampler) {
 
 SamplerChecks checks_ward() {
     return {.reference = make_reference,
+            .stages = {"histories", "samples"},
             .run = [](Verifier& verifier, const Sampler& sampler) -> std::vector<Check> {
-                return {check_histories(verifier, sampler), verifier.samples(sampler)};
+                return {check_histories(verifier, sampler), check_estimates(verifier, sampler)};
             }};
 }
 
