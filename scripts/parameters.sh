@@ -13,7 +13,8 @@ names=("$@")
 declare -A values=(
     [PROBE_RAYS]="2 8" [INHERITED]="0.25f 1.0f" [PRIOR_SHARE]="0.5f 0.9f" [SLOT_GROUP]="4 16"
     [PARENT_RAYS]="4.0f 16.0f" [SIGHT_RAYS]="0.5f 2.0f" [MOST_LENT]="4.0f 64.0f"
-    [LEAST_VISIBILITY]="0.0001f 0.0025f" [GROUP_VARIANCE]="0.25f 1.0f"
+    [LEAST_VISIBILITY]="0.0001f 0.0025f" [SEEN_RAYS]="0.2f 1.0f"
+    [HIDDEN_VISIBILITY]="0.002f 0.03f" [HIDDEN_SHARE]="0.1f 0.5f" [GROUP_VARIANCE]="0.25f 1.0f"
     [PIXEL_VARIANCE]="0.001f 0.016f" [REFINED_SHARE]="0.125f 0.5f" [MOST_SPLITS]="32 128"
     [CONTROL]="0.7f 0.9f" [FEWEST_DRAWS]="0.125f 0.5f" [MOST_DRAWS]="4.0f 16.0f")
 for name in "${names[@]}"; do

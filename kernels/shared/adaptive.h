@@ -39,8 +39,8 @@ typedef struct Pass {
 } Pass;
 SHARED_SIZE(Pass, 24)
 
-// The sampler's parameters. What each is worth, `scripts/parameters.sh` prints (docs/adaptive.md);
-// none makes the estimate biased.
+// The sampler's parameters. What each is worth, `scripts/parameters.sh` prints; none makes the
+// estimate biased.
 
 /// Shadow rays that a node of the cut is probed with, from up to REPRESENTATIVES pixels of the
 /// tile; one in images so wide that tiles are small in them. What a node's children take over of
