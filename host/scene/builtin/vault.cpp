@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <cmath>
+#include <glm/gtc/constants.hpp>
 
 #include "scene/builtin/builtin.hpp"
 #include "scene/builtin/random.hpp"
@@ -27,7 +28,7 @@ void make_vault(GltfWriter& out, const BuiltinOptions& options) {
         out.add_point(at, glm::vec3(0.3f));
     for (int i = 0; i < outside; ++i) {
         const float height = 2 * random.in(0, 1) - 1;
-        const float turn = 2 * static_cast<float>(M_PI) * random.in(0, 1);
+        const float turn = 2 * glm::pi<float>() * random.in(0, 1);
         const float across = std::sqrt(1 - height * height);
         const glm::vec3 towards(across * std::cos(turn), height, across * std::sin(turn));
         out.add_point(glm::vec3(0, 1.3f, 0) + random.in(5, 20) * towards,

@@ -54,9 +54,12 @@ INLINE float_n seen_of(const Source* s, uint slot) {
     return select((float_n)(0.0f), FLOATS_AT(s->visible + 16u * slot), s->valid);
 }
 
+// Whether a node is believed hidden.
+INLINE int_n is_hidden(float_n visible) { return visible < HIDDEN_VISIBILITY; }
+
 // V^ for the control variate: none of what is believed hidden.
 INLINE float_n known_part(float_n visible) {
-    return select(visible, (float_n)(0.0f), visible < HIDDEN_VISIBILITY);
+    return select(visible, (float_n)(0.0f), is_hidden(visible));
 }
 
 INLINE void add_color(Color_n* sum, Color_n c, float_n factor) {
@@ -74,7 +77,7 @@ INLINE Weighed weigh(const Source* s, uint at, float_n visible) {
     const float_n square =
         fabs(visible) * (whole - CONTROL * (2.0f - CONTROL) * known_part(visible));
     w.weight = color_luminance_n(w.color) * root_n(square) *
-               select((float_n)(1.0f), s->hidden, visible < HIDDEN_VISIBILITY);
+               select((float_n)(1.0f), s->hidden, is_hidden(visible));
     return w;
 }
 
@@ -168,9 +171,8 @@ static void find_weights(Weights* w, Source* s, float samples) {
     for (uint slot = 0u; slot < s->cut_size; ++slot) {
         const float_n visible = seen_of(s, slot);
         const Weighed own = weigh(s, s->cut[slot], visible);
-        const int_n is_hidden = visible < HIDDEN_VISIBILITY;
-        open += select(own.weight, (float_n)(0.0f), is_hidden);
-        hidden += select((float_n)(0.0f), own.weight, is_hidden);
+        open += select(own.weight, (float_n)(0.0f), is_hidden(visible));
+        hidden += select((float_n)(0.0f), own.weight, is_hidden(visible));
 #if LANES > 1
         s->cut_weights[slot] = own;
 #endif
@@ -180,10 +182,9 @@ static void find_weights(Weights* w, Source* s, float samples) {
         select((float_n)(1.0f), most / max(hidden, 1e-30f), (hidden > most) & (most > 0.0f));
     s->limit = (open + hidden * s->hidden) * (REFINED_SHARE / samples);
 #if LANES > 1
-    for (uint slot = 0u; slot < s->cut_size; ++slot) {
-        const int_n is_hidden = seen_of(s, slot) < HIDDEN_VISIBILITY;
-        s->cut_weights[slot].weight *= select((float_n)(1.0f), s->hidden, is_hidden);
-    }
+    for (uint slot = 0u; slot < s->cut_size; ++slot)
+        s->cut_weights[slot].weight *=
+            select((float_n)(1.0f), s->hidden, is_hidden(seen_of(s, slot)));
 #endif
     w->sum = w->largest_point = (float_n)(0.0f);
     w->control.red = w->control.green = w->control.blue = (float_n)(0.0f);
