@@ -16,12 +16,12 @@ typedef struct Lights_n {
     float_n red, green, blue;
 } Lights_n;
 
-#define NO_LIGHT 0xffffffffu
+#define NO_LIGHT_KIND 0xffffffffu  // of lanes without a light
 
 INLINE Lights_n load_lights_n(__global const Light* lights, uint_n indices, int_n valid) {
     float_n rows[16];
     load_columns((__global const float*)lights, sizeof(Light) / sizeof(float), indices, rows);
-    Lights_n l = {(uint_n)(NO_LIGHT),
+    Lights_n l = {(uint_n)(NO_LIGHT_KIND),
                   rows[0],
                   rows[1],
                   rows[2],
