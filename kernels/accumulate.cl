@@ -7,12 +7,21 @@
 #include "shared/surface.h"
 
 // image[y * width + x].rgb += weight x (estimates[item] + the surface's emission), cd/m2; .w +=
-// shadow rays. residuals[] belongs to the sum (lib/sum.h), weights[] is the sum of the weights.
-// HAS_GROUPS: the sample belongs to one of ERROR_GROUPS groups: groups[ERROR_GROUPS * pixel +
-// group] is the sum of weight x radiance, in w of weights.
+// shadow rays. HAS_EMITTER_PARTS: seen[item] is what stage emitter_parts has found. residuals[]
+// belongs to the sum (lib/sum.h), weights[] is the sum of the weights. HAS_GROUPS: the sample
+// belongs to one of ERROR_GROUPS groups: groups[ERROR_GROUPS * pixel + group] is the sum of weight
+// x radiance, in w of weights.
 #if HAS_EMISSION
-#define EMISSION_PARAMETERS , __global const Surface *surfaces, __global const Material *materials
-#define EMISSION_ARGUMENTS , surfaces, materials
+#if HAS_EMITTER_PARTS
+#define SEEN_PARAMETERS , __global const float4* seen
+#define SEEN_ARGUMENTS , seen
+#else
+#define SEEN_PARAMETERS
+#define SEEN_ARGUMENTS
+#endif
+#define EMISSION_PARAMETERS \
+    , __global const Surface *surfaces, __global const Material *materials SEEN_PARAMETERS
+#define EMISSION_ARGUMENTS , surfaces, materials SEEN_ARGUMENTS
 #else
 #define EMISSION_PARAMETERS
 #define EMISSION_ARGUMENTS
@@ -39,8 +48,16 @@ static void add_sample(Tiles tiles, uint item, IMAGE_PARAMETERS) {
     __global const Surface* surface = surfaces + item;
     if (surface->position.w >= 0.0f) {
         const float4 emission = materials[surface->shading].emission;
-        if (surface->front || emission.w != 0.0f) term.xyz += emission.xyz;
+#if HAS_EMITTER_PARTS
+        const float part = seen[item].w;
+#else
+        const float part = 1.0f;
+#endif
+        if (surface->front || emission.w != 0.0f) term.xyz += emission.xyz * part;
     }
+#if HAS_EMITTER_PARTS
+    term.xyz += seen[item].xyz;
+#endif
 #endif
     term.xyz *= weight;
     float4 sum = image[pixel];

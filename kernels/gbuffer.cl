@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Stage gbuffer: one primary ray per pixel of a run of tiles.
+#include "lib/film.h"
 #include "lib/random.h"
 #include "lib/textures.h"
 #include "lib/tiles.h"
@@ -77,16 +78,6 @@ static Ray primary_ray(Tiles tiles, uint item, Camera camera, uint jitter, uint 
                      orthographic ? camera.forward.xyz : normalize(towards),
                      camera.up.w > 0.0f ? camera.up.w * along : INFINITY};
     return ray;
-}
-
-// The area of a surface, with that unit normal, that a pixel sees at a distance along its ray.
-static float seen_area(Tiles tiles, Camera camera, Ray ray, float distance, float3 normal) {
-    const float3 image = cross(camera.right.xyz, camera.up.xyz);  // a quarter, at distance 1
-    const float pixel = 4.0f * length(image) / ((float)tiles.width * (float)tiles.height);
-    const float forward = dot(camera.forward.xyz, ray.direction);
-    const float enlarged =
-        camera.forward.w != 0.0f ? 1.0f : forward * forward * forward * distance * distance;
-    return pixel * enlarged / fabs(dot(normal, ray.direction));
 }
 
 // The direction in which a texture's u grows along a triangle; w: 1, or -1 where the image is
@@ -228,8 +219,8 @@ static void write_surface(Tiles tiles, Camera camera, __global Surface* surfaces
             colors[corner.y].xyz * weights.x + colors[corner.z].xyz * weights.y;
 #endif
 #if HAS_TEXTURES
-    const float share =
-        seen_area(tiles, camera, ray, distance, geometric) / max(largest * length(scaled), 1e-37f);
+    const float share = seen_area(tiles, camera, ray.direction, distance, geometric) /
+                        max(largest * length(scaled), 1e-37f);
     const uint map = MAP_KIND_COUNT * material;
     color *= sample_map(TEXTURE_ARGUMENTS, map + MAP_BASE_COLOR, corner, weights, share).xyz;
     const float4 polish =

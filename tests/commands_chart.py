@@ -114,6 +114,27 @@ class ChartTest(CommandTest):
         self.assertGreater(reference["luminance_standard_error"], 0)
         self.assertFalse(chart["settings"][0]["limited_by_reference"])
 
+    def test_whole_pixels(self):
+        chart, _ = self.chart("--whole", "--emitter-points", 0, "--samplers", "power,adaptive",
+                              "--light-samples", 4, "--seeds", 2, "--reference-time", 2)
+        self.assertEqual((chart["whole"], chart["spp"]), (True, [4, 16]))
+        self.assertIn("--whole", chart["command"])
+        self.assertEqual(chart["reference"]["sampler"], "adaptive")
+        for run in chart["runs"]:
+            self.assertGreater(run["seconds"]["start"], 0)
+        setting = chart["settings"][0]
+        runs = [r for r in chart["runs"] if all(r[k] == setting[k] for k in
+                                                ("sampler", "light_samples", "spp"))]
+        seconds = [sum(r["seconds"][k] for k in ("start", "prepare", "render")) for r in runs]
+        self.assertAlmostEqual(setting["seconds"]["median"], sum(seconds) / 2)
+        # An image of it, made by the command that it tells, has the error that it tells.
+        image = chart["images"][0]
+        self.assertNotIn("--pixel-centre", image["command"])
+        self.run_program(*image["command"].split()[1:], "-q")
+        found = json.loads(self.run_program("compare", image["command"].split()[-1],
+                                            "cornell-chart/reference.exr", "--json").stdout)
+        self.assertAlmostEqual(found["relmse"] / image["relmse"], 1, places=5)
+
     def test_chart_refuses(self):
         (self.folder / "mine").mkdir()
         (self.folder / "mine" / "thesis.txt").write_text("precious")
@@ -125,6 +146,7 @@ class ChartTest(CommandTest):
                 ([self.cornell, "--samplers", "power,magic"], ["magic", "uniform"]),
                 ([self.cornell, "--light-samples", "4,0"], ["--light-samples", "0"]),
                 ([self.cornell, "--spp", "many"], ["--spp", "many"]),
+                ([self.cornell, "--whole", "--spp", "1,4"], ["--spp 1", "--whole"]),
                 ([self.cornell, "--seeds", "0"], ["--seeds", "0"]),
                 ([self.cornell, "--samplers", "power", "--baseline", "ris"],
                  ["--baseline", "ris", "power"]),

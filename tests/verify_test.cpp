@@ -30,7 +30,8 @@ TEST(verify, lists_every_kernel) {
     for (const char* name : {"exhaustive", "uniform", "power", "ris", "lighttree", "contribution"})
         (void)kernel_named(kernels, fmt::format("samplers/{0}/{0}.cl", name), "samples_draw");
     const KernelCode& add = kernel_named(kernels, "accumulate.cl", "accumulate_add_pass");
-    EXPECT_EQ(add.features, (std::set<std::string>{"HAS_EMISSION", "HAS_GROUPS"}));
+    EXPECT_EQ(add.features,
+              (std::set<std::string>{"HAS_EMISSION", "HAS_EMITTER_PARTS", "HAS_GROUPS"}));
     EXPECT_TRUE(kernel_named(kernels, "gbuffer.cl", "gbuffer_trace_rays")
                     .features.contains("HAS_SPECULAR_MAPS"));
     EXPECT_TRUE(

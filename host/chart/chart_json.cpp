@@ -37,7 +37,8 @@ json to_json(const Run& run) {
     const Rendering& r = run.rendering;
     const Difference& d = run.difference;
     out["seed"] = run.seed;
-    out["seconds"] = {{"prepare", r.prepare_seconds},
+    out["seconds"] = {{"start", r.start_seconds},
+                      {"prepare", r.prepare_seconds},
                       {"render", r.render_seconds},
                       {"compile", r.compile_seconds}};
     out["stage_seconds"] = r.stage_seconds;
@@ -160,10 +161,11 @@ json images_json(const Chart& chart, const std::vector<ShownImage>& images,
         entry["equal_time"] = shown.equal_time;
         entry["errors"] = shown.file;
         entry["command"] = fmt::format(
-            "manylight render {} --sampler {} --light-samples {} --spp {} --seed {} --pixel-centre "
-            "--hide-emitters -o {}-{}x{}.exr",
-            facts.view, s.sampler, s.light_samples, s.spp, run->seed, s.sampler, s.light_samples,
-            s.spp);
+            "manylight render {} --sampler {} --light-samples {} --spp {} --seed {}{} -o "
+            "{}-{}x{}.exr",
+            facts.view, s.sampler, s.light_samples, s.spp, run->seed,
+            chart.options.whole ? "" : " --pixel-centre --hide-emitters", s.sampler,
+            s.light_samples, s.spp);
         out.push_back(std::move(entry));
     }
     return out;
@@ -232,6 +234,7 @@ json chart_json(const Chart& chart, const Renderer& renderer,
                 {"seconds", facts.seconds},
                 {"light_samples", o.light_samples},
                 {"spp", o.spp},
+                {"whole", o.whole},
                 {"seeds", o.seeds},
                 {"baseline", o.baseline},
                 {"start", to_json(start_of(chart, summaries).setting)},

@@ -27,7 +27,7 @@ struct Pilot {
 
 // Seconds that a setting will take, from what another one of its sampler took.
 double expected_seconds(const Setting& setting, const Pilot& pilot) {
-    return pilot.rendering.prepare_seconds +
+    return pilot.rendering.start_seconds + pilot.rendering.prepare_seconds +
            pilot.rendering.render_seconds * drawn(setting) / drawn(pilot.setting);
 }
 

@@ -17,6 +17,7 @@ struct ChartOptions {
     double most_seconds = 20;      // of one setting, over its seeds
     double reference_seconds = 0;  // to spend on the reference, at most; 0: as long as it takes
     std::string cache;             // folder for references; empty: the user's
+    bool whole = false;            // whole pixels, see WholePixels
     bool quiet = false;
 };
 

@@ -119,7 +119,8 @@ Setting reference_setting(const Renderer& renderer) {
     const auto drawn = static_cast<uint>(
         std::clamp<std::size_t>(drawn_per_image / pixels, fewest_drawn, most_drawn));
     const std::size_t lights = renderer.scene().lights.size();
-    if (lights > most_lights) return {"adaptive", light_samples, drawn / light_samples};
+    if (lights > most_lights || renderer.is_whole())
+        return {"adaptive", light_samples, drawn / light_samples};
     const bool exact = renderer.is_exact(find_sampler("exhaustive"));
     const auto count = static_cast<uint>(std::max<std::size_t>(lights, 1));
     return {"exhaustive", count, exact ? 1 : std::max(1u, drawn / count)};
@@ -129,7 +130,7 @@ std::string reference_name(const Renderer& renderer, const Setting& setting) {
     ContentHash hash;
     hash.add(renderer.scene());
     hash.add(std::as_bytes(std::span(&renderer.camera(), 1)));
-    hash.add(renderer.width()).add(renderer.height());
+    hash.add(renderer.width()).add(renderer.height()).add(renderer.is_whole());
     hash.add(setting.sampler).add(setting.light_samples).add(setting.spp);
     for (const auto& [file, text] : kernel_sources) hash.add(text);
     return hash.add(MANYLIGHT_VERSION).name() + ".exr";

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "clock.hpp"
 #include "lights/lights.hpp"
 
 namespace manylight {
@@ -16,12 +17,14 @@ Rendering Renderer::render(const Setting& setting, uint seed, Progress& progress
     options.width = width_;
     options.height = height_;
     options.memory = memory_;
-    options.pixel_centre = true;
-    options.hide_emitters = true;
+    options.pixel_centre = !whole_;
+    options.hide_emitters = !whole_;
+    const auto start = Clock::now();
     const std::map<std::string, double> before = device_.stage_seconds();
     const double compiled = device_.compile_seconds();
     Frame frame(device_, scene_, bvh_, camera_, options);
     frame.prepare();
+    const double started = seconds_since(start);
     FrameResult result = frame.render(progress);
     Rendering out;
     for (const auto& [stage, after] : device_.stage_seconds()) {
@@ -32,15 +35,20 @@ Rendering Renderer::render(const Setting& setting, uint seed, Progress& progress
     out.prepare_seconds = result.prepare_seconds;
     out.render_seconds = result.render_seconds;
     out.compile_seconds = device_.compile_seconds() - compiled;
+    if (whole_) {
+        // What of it was compiling is the same for all: a process finds it in a cache.
+        const double own = out.prepare_seconds + out.compile_seconds;
+        out.start_seconds = whole_->start_seconds + std::max(started - own, 0.0);
+    }
     out.primary_rays = result.primary_rays;
     out.shadow_rays = result.shadow_rays;
     return out;
 }
 
 bool Renderer::is_exact(const Sampler& sampler) const {
-    return sampler.all_lights && std::ranges::none_of(scene_.lights, [](const Light& light) {
-               return light_has(light, TRAIT_AREA);
-           });
+    return !whole_ && sampler.all_lights &&
+           std::ranges::none_of(scene_.lights,
+                                [](const Light& light) { return light_has(light, TRAIT_AREA); });
 }
 
 }  // namespace manylight

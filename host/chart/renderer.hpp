@@ -2,6 +2,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
 
 #include "pipeline/frame.hpp"
@@ -22,9 +23,10 @@ struct Setting {
     return static_cast<double>(s.light_samples) * s.spp;
 }
 
-/// An image and what it took, seconds. Loading, the BVH and the upload to the device are not in it.
+/// An image and what it took, seconds.
 struct Rendering {
     Image image;
+    double start_seconds = 0;    // loading, the BVH, the upload to the device: of whole pixels only
     double prepare_seconds = 0;  // the sampler's own: tree, clusters, contributions, PDFs
     double render_seconds = 0;   // the rest, learning included; compiling apart
     double compile_seconds = 0;
@@ -32,23 +34,33 @@ struct Rendering {
     std::size_t primary_rays = 0;
     std::size_t shadow_rays = 0;
 
-    [[nodiscard]] double seconds() const { return prepare_seconds + render_seconds; }
+    [[nodiscard]] double seconds() const {
+        return start_seconds + prepare_seconds + render_seconds;
+    }
+};
+
+/// Whole pixels, as people see them: pixel samples anywhere in the pixel, emitters shown. Their
+/// time is that of the process.
+struct WholePixels {
+    double start_seconds = 0;  // before a frame is made
 };
 
 /// Renders one view of a scene again and again on one device: all pixel samples at the pixel's
-/// centre, emitters black. Keeps references to scene and BVH.
+/// centre and emitters black, or whole pixels. Keeps references to scene and BVH.
 class Renderer {
   public:
     /// `memory`: see RenderOptions.
     Renderer(Device device, const Scene& scene, const WideBvh& bvh, const Camera& camera,
-             unsigned width, unsigned height, std::size_t memory)
+             unsigned width, unsigned height, std::size_t memory,
+             const std::optional<WholePixels>& whole = {})
         : device_(std::move(device)),
           scene_(scene),
           bvh_(bvh),
           camera_(camera),
           width_(width),
           height_(height),
-          memory_(memory) {}
+          memory_(memory),
+          whole_(whole) {}
 
     [[nodiscard]] Rendering render(const Setting& setting, uint seed, Progress& progress);
 
@@ -58,7 +70,10 @@ class Renderer {
     [[nodiscard]] unsigned height() const { return height_; }
     [[nodiscard]] const DeviceInfo& device() const { return device_.info(); }
 
-    /// Whether all lights together, without chance, make the image: none has an area.
+    [[nodiscard]] bool is_whole() const { return whole_.has_value(); }
+
+    /// Whether all lights together, without chance, make the image: none has an area, and pixels
+    /// are seen at their centres.
     [[nodiscard]] bool is_exact(const Sampler& sampler) const;
 
   private:
@@ -68,6 +83,7 @@ class Renderer {
     Camera camera_;
     unsigned width_, height_;
     std::size_t memory_;
+    std::optional<WholePixels> whole_;
 };
 
 }  // namespace manylight

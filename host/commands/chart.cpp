@@ -43,6 +43,7 @@ std::string command_of(const ChartOptions& o, const std::string& view, const std
         "--baseline {} --most-seconds {}",
         view, fmt::join(o.samplers, ","), join(o.light_samples), join(o.spp), o.seeds, o.seed,
         o.baseline, o.most_seconds);
+    if (o.whole) out += " --whole";
     if (o.reference_seconds > 0) out += fmt::format(" --reference-time {}", o.reference_seconds);
     return out + " -o " + quote(output);
 }
@@ -53,6 +54,9 @@ ChartOptions complete(ChartOptions options, std::size_t lights) {
         std::ranges::sort(*steps);
         steps->erase(std::unique(steps->begin(), steps->end()), steps->end());
     }
+    if (options.whole && options.spp.front() == 1)
+        throw InputError(
+            "--spp 1: a single pixel sample lies at the pixel's centre; --whole takes two or more");
     std::vector<std::string> samplers;
     for (const Sampler& sampler : all_samplers())
         if (options.samplers.empty()
@@ -137,8 +141,9 @@ int run_chart(const ChartArguments& arguments) {
     const auto build_start = Clock::now();
     const WideBvh bvh = build_bvh(loaded, device, options.quiet);
     const double bvh_seconds = seconds_since(build_start);
-    Renderer renderer(device, loaded.scene, bvh, loaded.camera, loaded.width, loaded.height,
-                      arguments.memory);
+    Renderer renderer(
+        device, loaded.scene, bvh, loaded.camera, loaded.width, loaded.height, arguments.memory,
+        options.whole ? std::optional(WholePixels{seconds_since(start)}) : std::nullopt);
     if (!options.quiet)
         say("{}: {} triangles, {} lights, camera '{}', {} x {}\n{} ({})\n", loaded.scene.file,
             loaded.scene.seen_triangle_count(), loaded.scene.lights.size(), loaded.view.name,

@@ -2,7 +2,6 @@
 #include "pipeline/frame.hpp"
 
 #include <algorithm>
-#include <optional>
 
 #include "stages/reflections.hpp"
 
@@ -42,11 +41,13 @@ struct Frame::Stages {
     GBufferStage gbuffer;
     std::unique_ptr<LightSampler> sampler;
     std::optional<ReflectionStage> reflections;
+    std::optional<EmitterPartStage> emitter_parts;
     AccumulateStage accumulate;
     Buffer<Surface> centres;        // of the pixels, where the plan says so
     std::size_t centres_first = 0;  // of their points (see GBufferStage)
     Buffer<Surface> surfaces;       // of the pixel samples
     Estimates estimates;
+    Buffer<float4> seen;  // of emitters' parts, in the pixel samples
     ImageSum image;
 
     Stages(Device& device, DeviceScene uploaded, std::size_t pixels, bool grouped)
@@ -74,7 +75,8 @@ Frame::Frame(const Device& device, const Scene& scene, const WideBvh& bvh, const
       camera_(camera),
       options_(options),
       sampler_(find_sampler(options.sampler)),
-      plan_(make_plan(device.info(), scene, bvh, options)),
+      emitter_parts_(options.emitter_parts(scene, camera)),
+      plan_(make_plan(device.info(), scene, bvh, options, emitter_parts_)),
       memory_(plan_, options.sampler),
       schedule_(options_, plan_, scene.lights.size()),
       checkpoints_(options_, plan_),
@@ -87,6 +89,8 @@ void Frame::prepare() {
         stages_ = std::make_shared<Stages>(device_, std::move(uploaded),
                                            std::size_t{options_.width} * options_.height,
                                            options_.estimates_error());
+        if (!emitter_parts_.empty())
+            stages_->emitter_parts.emplace(device_, stages_->scene, emitter_parts_);
     }
     Stages& s = *stages_;
     allocate_pixels();
@@ -121,6 +125,7 @@ DeviceScene Frame::upload() {
                                         has_two_surfaces() ? 2 * items() : items());
     if (sampler_.tree && !scene_.lights.empty()) reserve_tree(device_, scene_.lights, uploaded);
     if (options_.hide_emitters) uploaded.emission["HAS_EMISSION"] = 0;
+    if (!emitter_parts_.empty()) uploaded.emission["HAS_EMITTER_PARTS"] = 1;
     if (!options_.reflections) uploaded.shading["HAS_REFLECTIONS"] = 0;
     return uploaded;
 }
@@ -133,6 +138,7 @@ void Frame::allocate_pixels() {
         s.centres = has_two_surfaces() ? device_.allocate<Surface>(items()) : s.surfaces;
     s.centres_first = has_two_surfaces() ? items() : 0;
     s.estimates = {allocate_zeros(device_, items()), allocate_zeros(device_, items())};
+    if (s.emitter_parts) s.seen = device_.allocate<float4>(items());
     if (s.scene.shading.at("HAS_REFLECTIONS") != 0)
         s.reflections.emplace(device_, s.scene, items(), sampler_.closed_form);
 }
@@ -274,13 +280,15 @@ void Frame::take_samples(Work& work, Progress& progress) {
     }
 }
 
-// Stage gbuffer finds the surfaces of pixel sample i, unless they are at hand. Returns whether it
-// traced them.
+// Stage gbuffer finds the surfaces of pixel sample i, unless they are at hand, and stage
+// emitter_parts what is seen of their parts. Returns whether the first traced.
 bool Frame::trace_surfaces(const Work& work, uint i) {
     Stages& s = *stages_;
     const bool alike = !options_.jitters() && !passes_by_chance(scene_);
     const bool at_hand = alike && (i > work.visit.first || plan_.centres);
     if (!at_hand) s.gbuffer.trace(work.visit.batch, schedule_.position(i), s.surfaces);
+    if (s.emitter_parts)
+        s.emitter_parts->trace(work.visit.batch, schedule_.position(i), s.surfaces, s.seen);
     return !at_hand;
 }
 
@@ -308,30 +316,15 @@ bool Frame::draw_lights(Work& work, uint i, Progress& progress) {
 // Stage accumulate adds what pixel sample i has come to to the image: of all pixels, or of a pass.
 void Frame::accumulate(const Work& work, uint i, const std::optional<Pass>& pass) {
     Stages& s = *stages_;
-    s.accumulate.add(work.visit.batch, pass, s.surfaces, s.estimates.sums,
+    s.accumulate.add(work.visit.batch, pass, s.surfaces, s.estimates.sums, s.seen,
                      {schedule_.weight(i), i % ERROR_GROUPS}, s.image);
 }
 
 // The image so far is the mean of each pixel's samples; groups of these say what its error is.
 void Frame::keep_image() {
     Stopwatch watch(result_.render_seconds, device_);
-    result_.image = Image(options_.width, options_.height, {"R", "G", "B"});
-    const std::vector<float4> sums = stages_->image.sums.download();
-    const std::vector<float> weights = stages_->image.weights.download();
-    double rays = 0;
-    double samples = 0;
-    result_.empty_pixels = static_cast<std::size_t>(std::ranges::count(weights, 0.f));
-    const auto first_weight = static_cast<float>(RenderOptions::first_samples);
-    const float later_weight = schedule_.weight(RenderOptions::first_samples);
-    for (std::size_t i = 0; i < sums.size(); ++i) {
-        for (int c = 0; c < 3; ++c)
-            result_.image.values[3 * i + c] = sums[i][c] / std::max(weights[i], 1e-30f);
-        rays += sums[i].w;
-        samples += std::min(weights[i], first_weight) +
-                   std::max(weights[i] - first_weight, 0.f) / later_weight;
-    }
-    result_.shadow_rays = standing_.begin_rays + static_cast<std::size_t>(rays);
-    result_.spp = samples / static_cast<double>(sums.size());
+    keep_means(stages_->image, options_.width, schedule_, result_);
+    result_.shadow_rays += standing_.begin_rays;
     result_.light_samples = schedule_.light_samples(0);
     result_.later_light_samples =
         schedule_.light_samples(std::max(std::ranges::max(standing_.done), 1u) - 1);

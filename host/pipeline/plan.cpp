@@ -69,8 +69,13 @@ unsigned RenderOptions::tile_size() const {
     return own > 0 ? own : clusters.tile_size;
 }
 
+EmitterParts RenderOptions::emitter_parts(const Scene& scene, const Camera& camera) const {
+    if (!jitters() || hide_emitters) return {};
+    return find_emitter_parts(scene, camera, width, height);
+}
+
 Plan make_plan(const DeviceInfo& device, const Scene& scene, const WideBvh& bvh,
-               const RenderOptions& options) {
+               const RenderOptions& options, const EmitterParts& emitters) {
     const Sampler& sampler = find_sampler(options.sampler);
     const ParameterValues parameters = values_of(sampler, options.parameters);
     const unsigned size = options.tile_size();
@@ -92,7 +97,8 @@ Plan make_plan(const DeviceInfo& device, const Scene& scene, const WideBvh& bvh,
     plan.scene_bytes = scene_bytes(scene, bvh, sampler.tree);
     const std::size_t light_tree = sampler.tree ? 2 * sizeof(LightNode) * lights : 0;
     plan.image_bytes = std::size_t{options.width} * options.height *
-                       ImageSum::pixel_bytes(options.estimates_error());
+                           ImageSum::pixel_bytes(options.estimates_error()) +
+                       emitters.bytes();
     check_buffers(device, scene, bvh, light_tree,
                   std::size_t{options.width} * options.height * sizeof(float4) *
                       (options.estimates_error() ? ERROR_GROUPS : 1));
@@ -111,6 +117,7 @@ Plan make_plan(const DeviceInfo& device, const Scene& scene, const WideBvh& bvh,
     const bool reflects = options.reflections && find_features(scene).reflections;
     const std::size_t tile_bytes =
         need.tile + tile_items * (surfaces * surface_bytes + 2 * sizeof(float4) +
+                                  (emitters.empty() ? 0 : sizeof(float4)) +
                                   (reflects ? ReflectionStage::item_bytes() : 0));
     const std::size_t budget =
         options.memory > 0 ? options.memory : std::min(device.global_memory / 2, default_budget);

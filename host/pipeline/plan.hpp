@@ -9,6 +9,7 @@
 #include "clock.hpp"
 #include "samplers/contribution/options.hpp"
 #include "samplers/parameters.hpp"
+#include "stages/emitter_parts.hpp"
 
 namespace manylight {
 
@@ -50,6 +51,9 @@ struct RenderOptions {
 
     /// Whether pixel samples lie at random in their pixels.
     [[nodiscard]] bool jitters() const { return planned_spp() > 1 && !pixel_centre; }
+
+    /// What stage emitter_parts draws; nothing where pixels are seen at their centres.
+    [[nodiscard]] EmitterParts emitter_parts(const Scene& scene, const Camera& camera) const;
 };
 
 /// What a frame will take on the device, bytes.
@@ -71,8 +75,9 @@ struct Plan {
 };
 
 /// As many tiles in a batch as the budget and the device allow, each with its quadtree at its
-/// worst. Throws InputError where the options contradict each other or not even one tile fits.
+/// worst. `emitters`: options.emitter_parts(). Throws InputError where the options contradict
+/// each other or not even one tile fits.
 [[nodiscard]] Plan make_plan(const DeviceInfo& device, const Scene& scene, const WideBvh& bvh,
-                             const RenderOptions& options);
+                             const RenderOptions& options, const EmitterParts& emitters = {});
 
 }  // namespace manylight

@@ -32,11 +32,12 @@ AccumulateStage::AccumulateStage(Device& device, const DeviceScene& scene, bool 
 
 void AccumulateStage::add(const Tiles& tiles, const std::optional<Pass>& pass,
                           const Buffer<Surface>& surfaces, const Buffer<float4>& estimates,
-                          SampleWeight weight, ImageSum& image) {
+                          const Buffer<float4>& seen, SampleWeight weight, ImageSum& image) {
     Arguments arguments = scene_;
     arguments.set("tiles", tiles)
         .set("surfaces", surfaces)
         .set("estimates", estimates)
+        .set("seen", seen)
         .set("weight", weight.weight)
         .set("image", image.sums)
         .set("residuals", image.residuals)

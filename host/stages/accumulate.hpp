@@ -38,9 +38,11 @@ class AccumulateStage {
     AccumulateStage(Device& device, const DeviceScene& scene, bool grouped);
 
     /// Adds estimates[item], and to rgb what the surface emits to the camera: of all pixels of
-    /// `tiles`, or of a pass over them.
+    /// `tiles`, or of a pass over them. `seen`: what stage emitter_parts has found, where the
+    /// scene on the device has it.
     void add(const Tiles& tiles, const std::optional<Pass>& pass, const Buffer<Surface>& surfaces,
-             const Buffer<float4>& estimates, SampleWeight weight, ImageSum& image);
+             const Buffer<float4>& estimates, const Buffer<float4>& seen, SampleWeight weight,
+             ImageSum& image);
 
   private:
     Arguments scene_;

@@ -120,7 +120,7 @@ DeviceScene upload_scene(Device& device, const Scene& scene, const WideBvh& bvh,
     out.shading["HAS_GGX"] = features.ggx;
     if (varies_reflectance(scene)) out.shading["HAS_REFLECTANCE"] = 1;
     out.shading["HAS_REFLECTIONS"] = features.reflections;
-    out.emission = {{"HAS_EMISSION", features.emission}};
+    out.emission = {{"HAS_EMISSION", features.emission}, {"HAS_EMITTER_PARTS", 0}};
     return out;
 }
 

@@ -15,6 +15,7 @@
     ROW(layout)               \
     ROW(random)               \
     ROW(gbuffer)              \
+    ROW(emitter_parts)        \
     ROW(clusters)             \
     ROW(representatives)      \
     ROW(contributions)        \

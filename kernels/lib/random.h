@@ -63,6 +63,9 @@ INLINE uint_n step_bits_n(uint_n bits, uint i) {
 // The dimension that seeds the directions of stage reflections.
 #define RANDOM_REFLECTION 0xfffffffcu
 
+// The dimension that seeds the points of stage emitter_parts.
+#define RANDOM_EMITTER 0xfffffffbu
+
 // A float in [0, 1) from the top 24 bits.
 static float unit_float(uint bits) { return (float)(bits >> 8) * 0x1p-24f; }
 

@@ -6,6 +6,7 @@
 #include "shared/adaptive.h"
 #include "shared/camera.h"
 #include "shared/contribution.h"
+#include "shared/emitter_part.h"
 #include "shared/instance.h"
 #include "shared/light.h"
 #include "shared/light_cells.h"
@@ -47,6 +48,8 @@
     X(Pass, first) X(Pass, count) X(Pass, number) X(Pass, first_tile) X(Pass, tile_count)          \
     X(Pass, packets) X(Budget, samples) X(Budget, factor) X(Budget, exposure)                      \
     X(Expectation, variance) X(Expectation, luminance)                                             \
+    X(EmitterPart, corner) X(EmitterPart, way_2) X(EmitterPart, covered) X(EmitterPart, triangle)  \
+    X(EmitterPart, pixel)                                                                          \
     X(Mixture, visible) X(Mixture, unshadowed) X(Mixture, power) X(Mixture, total_power)
 // clang-format on
 

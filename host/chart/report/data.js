@@ -63,7 +63,9 @@ document.title = `${scene}: speed and accuracy`;
 element("title").textContent = document.title;
 element("facts").textContent = `${chart.width} × ${chart.height} pixels, ${chart.scene.lights} lights, ` +
   `${chart.scene.triangles} triangles, camera “${chart.scene.camera}”; ${chart.device} (${chart.platform}); ` +
-  `loading ${number(chart.seconds.load)} s, BVH ${number(chart.seconds.bvh)} s, apart from all times below.`;
+  `loading ${number(chart.seconds.load)} s, BVH ${number(chart.seconds.bvh)} s, ` +
+  (chart.whole ? "in all times below. Whole pixels: anti-aliased, with the emitters in view."
+    : "apart from all times below. Pixels' centres; emitters are black.");
 {
   const r = chart.reference;
   const own = r.relmse === 0 ? "it is exact" :

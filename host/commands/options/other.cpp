@@ -222,9 +222,14 @@ void add_chart(CLI::App& app, std::function<int()>& run) {
     add_list("--light-samples", o.light_samples, "light samples per pixel sample")
         ->check(whole(1, 65536))
         ->default_str("1,4,16,64");
-    add_list("--spp", o.spp, "pixel samples, all at the pixel's centre")
-        ->check(whole(1, most_spp))
-        ->default_str("1,4");
+    const auto* spp = add_list("--spp", o.spp,
+                               "pixel samples, all at the pixel's centre; with --whole anywhere in "
+                               "it (default: 4,16)")
+                          ->check(whole(1, most_spp))
+                          ->default_str("1,4");
+    command->add_flag("--whole", o.whole,
+                      "judge what people see: anti-aliased pixels with the emitters in view, and "
+                      "the time of the whole process (default: pixels' centres, emitters black)");
     command->add_option("--seeds", o.seeds, "how often each setting is rendered")
         ->check(whole(1, 1000))
         ->capture_default_str();
@@ -258,9 +263,11 @@ void add_chart(CLI::App& app, std::function<int()>& run) {
                     "  manylight chart scene.glb\n"
                     "  manylight chart scene.glb --samplers lighttree,adaptive --seeds 10 -o "
                     "two-samplers\n"
-                    "  manylight chart scene.glb --light-samples 4 --spp 1,4,16 --height 512\n");
-    command->callback([&run, arguments, command] {
+                    "  manylight chart scene.glb --light-samples 4 --spp 1,4,16 --height 512\n"
+                    "  manylight chart scene.glb --whole --samplers lighttree,adaptive\n");
+    command->callback([&run, arguments, command, spp] {
         require_scene(*command, arguments->scene);
+        if (arguments->options.whole && spp->empty()) arguments->options.spp = {4, 16};
         for (const std::string& name : arguments->options.samplers)
             (void)find_sampler(name, "--samplers");
         run = [arguments] { return run_chart(*arguments); };

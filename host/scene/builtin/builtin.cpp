@@ -75,6 +75,7 @@ const Builtin builtins[] = {
      "4096 points and spots, of which many are at one place",
      make_stacks,
      {{"stack", "lights at one place", true, 64, {1, 8, 64, 512, 4096}}}},
+    {"street", "10,000 lamps of a twentieth of a pixel each, which the camera sees", make_street},
     {"tubes",
      "16 emitters over a polished floor",
      make_tubes,

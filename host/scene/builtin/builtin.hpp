@@ -61,6 +61,7 @@ void make_plates(GltfWriter& out, const BuiltinOptions& options);
 void make_range(GltfWriter& out, const BuiltinOptions& options);
 void make_rooms(GltfWriter& out, const BuiltinOptions& options);
 void make_stacks(GltfWriter& out, const BuiltinOptions& options);
+void make_street(GltfWriter& out, const BuiltinOptions& options);
 void make_thicket(GltfWriter& out, const BuiltinOptions& options);
 void make_tubes(GltfWriter& out, const BuiltinOptions& options);
 void make_vault(GltfWriter& out, const BuiltinOptions& options);
