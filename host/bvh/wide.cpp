@@ -248,6 +248,11 @@ class WideBuilder {
 
 }  // namespace
 
+WideBvh::WideBvh() = default;
+WideBvh::WideBvh(WideBvh&&) noexcept = default;
+WideBvh& WideBvh::operator=(WideBvh&&) noexcept = default;
+WideBvh::~WideBvh() = default;
+
 WideBvh build_wide_bvh(const Scene& scene, unsigned width, unsigned block, float reach,
                        const std::function<void(double)>& report) {
     WideBvh wide;

@@ -25,6 +25,12 @@ struct WideBvh {
     /// vertex 0 to 1, 0 to 2, 1 to 2.
     std::vector<float, PageAllocator<float>> blocks;
     std::vector<Instance> instances;  // the scene's, with their roots
+
+    // Elsewhere: the numbers' allocator keeps a compiler that does not optimise busy with each.
+    WideBvh();
+    WideBvh(WideBvh&&) noexcept;
+    WideBvh& operator=(WideBvh&&) noexcept;
+    ~WideBvh();
 };
 
 /// The wide BVH of a scene; `width` and `block` are 4, 8 or 16. Boxes are padded so that a ray that

@@ -44,7 +44,47 @@ Edge edge_of(const Emitter& e, int k) {
     return {e.vertices[k], e.vertices[(k + 1) % 3], e.material};
 }
 
-// Edges by where they are. Open addressing: a million triangles have three million edges.
+std::uint32_t hash_of(const Edge& edge) {
+    std::uint64_t hash = edge.material;
+    for (const glm::vec3& p : {edge.from, edge.to})
+        for (int axis = 0; axis < 3; ++axis) {
+            const float x = p[axis] + 0.f;  // -0 is equal to 0
+            hash = (hash ^ std::bit_cast<std::uint32_t>(x)) * 0x9e3779b97f4a7c15u;
+            hash ^= hash >> 32;
+        }
+    return static_cast<std::uint32_t>(hash);
+}
+
+// Which edges may have their reverse among emitters: most of many lamps stand alone.
+class SharedEdges {
+  public:
+    explicit SharedEdges(const std::vector<Emitter>& emitters) : shared_(3 * emitters.size()) {
+        // Bits by hash: those that were met once, and again.
+        const std::size_t bits = std::bit_ceil(std::max<std::size_t>(8 * shared_.size(), 64));
+        std::vector<bool> met(bits), again(bits);
+        const auto bit_of = [&](std::size_t i) {
+            const Edge edge = edge_of(emitters[i / 3], static_cast<int>(i % 3));
+            return (hash_of(edge) ^ hash_of({edge.to, edge.from, edge.material})) & (bits - 1);
+        };
+        for (std::size_t i = 0; i < shared_.size(); ++i) {
+            const std::size_t bit = bit_of(i);
+            if (met[bit]) again[bit] = true;
+            met[bit] = true;
+        }
+        for (std::size_t i = 0; i < shared_.size(); ++i) {
+            shared_[i] = again[bit_of(i)];
+            count_ += shared_[i];
+        }
+    }
+    [[nodiscard]] bool may_be(std::size_t emitter, int k) const { return shared_[3 * emitter + k]; }
+    [[nodiscard]] std::size_t count() const { return count_; }
+
+  private:
+    std::vector<bool> shared_;  // [3 * emitter + k]
+    std::size_t count_ = 0;
+};
+
+// Edges by where they are, by open addressing.
 class EdgeTable {
   public:
     struct Side {
@@ -52,8 +92,9 @@ class EdgeTable {
         int k;
     };
 
-    explicit EdgeTable(const std::vector<Emitter>& emitters)
-        : emitters_(emitters), slots_(std::bit_ceil(6 * emitters.size() + 1)) {}
+    /// For up to `edges` of them.
+    EdgeTable(const std::vector<Emitter>& emitters, std::size_t edges)
+        : emitters_(emitters), slots_(std::bit_ceil(2 * edges + 1)) {}
 
     /// Which emitter's edge was put last of those that are equal to `edge`, if any was.
     [[nodiscard]] std::optional<Side> find(const Edge& edge) const {
@@ -73,17 +114,6 @@ class EdgeTable {
         std::uint32_t hash;
         bool used;
     };
-
-    static std::uint32_t hash_of(const Edge& edge) {
-        std::uint64_t hash = edge.material;
-        for (const glm::vec3& p : {edge.from, edge.to})
-            for (int axis = 0; axis < 3; ++axis) {
-                const float x = p[axis] + 0.f;  // -0 is equal to 0
-                hash = (hash ^ std::bit_cast<std::uint32_t>(x)) * 0x9e3779b97f4a7c15u;
-                hash ^= hash >> 32;
-            }
-        return static_cast<std::uint32_t>(hash);
-    }
 
     // The edge's slot, or the free one that it would take.
     [[nodiscard]] std::size_t slot_of(const Edge& edge) const {
@@ -144,15 +174,18 @@ bool is_parallelogram(const Shape& joined, const Emitter& a, int i) {
 std::vector<Shape> find_shapes(const std::vector<Emitter>& emitters) {
     constexpr LightKind gone = light_kind_count;  // into the other's parallelogram
     std::vector<Shape> shapes;
+    shapes.reserve(emitters.size());
     for (std::size_t i = 0; i < emitters.size(); ++i) {
         const Emitter& e = emitters[i];
         shapes.push_back(
             {LIGHT_TRIANGLE, e.vertices[0], e.edge1(), e.edge2(), e.offset, i, i, e.varies});
     }
+    const SharedEdges shared(emitters);
     for (const bool diagonals : {true, false}) {
-        EdgeTable table(emitters);
+        EdgeTable table(emitters, shared.count());
         for (std::size_t i = 0; i < emitters.size(); ++i) {
             for (int k = 0; k < 3 && shapes[i].kind == LIGHT_TRIANGLE; ++k) {
+                if (!shared.may_be(i, k)) continue;
                 const Edge edge = edge_of(emitters[i], k);
                 if (diagonals && !is_longest(emitters[i], k)) continue;
                 const auto found = table.find({edge.to, edge.from, edge.material});
@@ -168,7 +201,8 @@ std::vector<Shape> find_shapes(const std::vector<Emitter>& emitters) {
                 shapes[i].kind = gone;
             }
             for (int k = 0; k < 3 && shapes[i].kind == LIGHT_TRIANGLE; ++k)
-                if (!diagonals || is_longest(emitters[i], k)) table.put({i, k});
+                if (shared.may_be(i, k) && (!diagonals || is_longest(emitters[i], k)))
+                    table.put({i, k});
         }
     }
     std::erase_if(shapes, [](const Shape& shape) { return shape.kind == gone; });

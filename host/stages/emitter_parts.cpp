@@ -2,6 +2,7 @@
 #include "stages/emitter_parts.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <tuple>
 
@@ -24,12 +25,31 @@ Corner mix(const Corner& a, const Corner& b, double t) {
             between(a.weights, b.weights)};
 }
 
-using Polygon = std::vector<Corner>;
+// Convex: each of the planes that a triangle is cut by adds a corner at most, and there are two
+// across the view, four about the image and four about a pixel.
+class Polygon {
+  public:
+    Polygon() = default;
+    Polygon(std::initializer_list<Corner> corners) {
+        for (const Corner& c : corners) push_back(c);
+    }
+    void push_back(const Corner& corner) { corners_[size_++] = corner; }
+    [[nodiscard]] std::size_t size() const { return size_; }
+    [[nodiscard]] const Corner& operator[](std::size_t i) const { return corners_[i]; }
+    [[nodiscard]] const Corner* begin() const { return corners_.data(); }
+    [[nodiscard]] const Corner* end() const { return begin() + size_; }
+
+  private:
+    std::array<Corner, 3 + 10> corners_;
+    std::size_t size_ = 0;
+};
 
 // What of a polygon lies where `height`, which is linear, is above 0 (Sutherland and Hodgman,
 // "Reentrant Polygon Clipping", 1974).
 template <class Height>
 Polygon clip(const Polygon& polygon, const Height& height) {
+    const auto is_in = [&height](const Corner& c) { return height(c) > 0; };
+    if (std::ranges::all_of(polygon, is_in)) return polygon;
     Polygon out;
     for (std::size_t i = 0; i < polygon.size(); ++i) {
         const Corner& a = polygon[i];
@@ -50,7 +70,7 @@ Polygon clip_between(const Polygon& polygon, double from, double to) {
 
 // In pixels.
 double area_of(const Polygon& polygon) {
-    if (polygon.empty()) return 0;
+    if (polygon.size() < 3) return 0;
     const auto place = [](const Corner& c) { return glm::dvec2(c.x, c.y) / c.z; };
     const glm::dvec2 from = place(polygon[0]);
     double twice = 0;
@@ -192,14 +212,14 @@ EmitterParts find_emitter_parts(const Scene& scene, const Camera& camera, unsign
     EmitterParts out;
     const std::size_t pixels = std::size_t{width} * height;
     out.stride = static_cast<uint>(std::max<std::size_t>((found.size() + pixels - 1) / pixels, 1));
-    std::erase_if(found, [&](const Found& f) { return f.covered * float(out.stride) > 1; });
-    std::ranges::stable_sort(found, {}, [](const Found& f) { return f.part.pixel; });
+    if (out.stride > 1)
+        std::erase_if(found, [&](const Found& f) { return f.covered * float(out.stride) > 1; });
     out.pixel_parts.resize(pixels + 1);
-    for (const Found& f : found) {
-        out.parts.push_back(f.part);
-        ++out.pixel_parts[f.part.pixel + 1];
-    }
+    for (const Found& f : found) ++out.pixel_parts[f.part.pixel + 1];
     for (std::size_t p = 0; p < pixels; ++p) out.pixel_parts[p + 1] += out.pixel_parts[p];
+    out.parts.resize(found.size());
+    std::vector<uint> next(out.pixel_parts.begin(), out.pixel_parts.end() - 1);
+    for (const Found& f : found) out.parts[next[f.part.pixel]++] = f.part;
     return out;
 }
 
